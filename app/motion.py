@@ -1,0 +1,508 @@
+"""Heart: the words two rooms share: sample, row, phase, command, snapshot.
+
+Frames: *b* is the shoe (x toe, y right, z down), *n* is north–east–down. A quaternion ``q_nb`` is
+a unit Hamilton quaternion, wxyz, and takes body vectors into *n*. Everything is SI and radians; the
+magnetic field is in µT. Degrees live in ``scene/`` only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from enum import IntEnum, StrEnum
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.settings import Settings
+
+Floats = NDArray[np.float64]
+Ints = NDArray[np.int64]
+Vector = tuple[float, float, float]
+Quaternion = tuple[float, float, float, float]
+
+#: Two stamps further apart than this are two segments: nothing is integrated across.
+GAP_NS = 250_000_000
+
+
+class Role(StrEnum):
+    """Where a sensor sits. ``FOOT`` is one foot of which nobody said left or right."""
+
+    LEFT = "left"
+    RIGHT = "right"
+    FOOT = "foot"
+    OTHER = "other"
+
+
+def role_of(sensor: str) -> Role:
+    """The role a sensor's bare name stands for: ``left`` is the left foot, an unknown name a foot."""
+    return Role(sensor) if sensor in set(Role) else Role.FOOT
+
+
+class GaitPhase(IntEnum):
+    """The two states of the gait-phase machine (2012 paper, Fig. 5)."""
+
+    STANCE = 0
+    SWING = 1
+
+
+# --- samples -------------------------------------------------------------------------------------
+
+
+class Sample(NamedTuple):
+    """One reading of one sensor, in the shoe's axes. ``seq`` counts per sensor.
+
+    ``specific_force_b`` is what an accelerometer reads: (0, 0, −g) m/s² at rest, pointing up.
+    ``saturation`` has bit i set when channel i (force xyz, rate xyz, field xyz) is at its range.
+    ``device_q_nb`` is the orientation the sensor computed itself, if it does.
+    """
+
+    sensor: str
+    seq: int
+    device_ns: int
+    host_ns: int
+    specific_force_b: Vector  # m/s²
+    angular_rate_b: Vector  # rad/s
+    field_b: Vector | None = None  # µT; relative (about 1) where the device has no unit
+    saturation: int = 0
+    device_q_nb: Quaternion | None = None
+
+
+class Column(IntEnum):
+    """Columns of a sample matrix, float64 [n, 10]: the form the compiled steps read.
+
+    ``ELAPSED_NS`` is whole nanoseconds since the sensor's first sample: exact up to 104 days.
+    A missing magnetometer is NaN.
+    """
+
+    ELAPSED_NS = 0
+    FX = 1
+    FY = 2
+    FZ = 3
+    WX = 4
+    WY = 5
+    WZ = 6
+    MX = 7
+    MY = 8
+    MZ = 9
+
+
+SAMPLE_WIDTH = len(Column)
+
+
+@dataclass(frozen=True)
+class Samples:
+    """All samples of one sensor in columns: what an importer makes and a batch reads.
+
+    Stamps increase strictly and every force and rate is finite: ``formats.clean`` dropped the
+    rest and says how many. ``matrix`` is [n, 10] by ``Column``; ``device_ns`` is the first stamp.
+    """
+
+    sensor: str
+    role: Role
+    device_ns: int
+    matrix: Floats
+    saturation: NDArray[np.uint16]
+    dropped: Mapping[str, int] = field(default_factory=dict)  # reason in words → rows
+
+    def __len__(self) -> int:
+        return len(self.matrix)
+
+    @property
+    def duration_s(self) -> float:
+        """Seconds from the first stamp to the last; 0 with fewer than two."""
+        return float(self.matrix[-1, 0] - self.matrix[0, 0]) * 1e-9 if len(self) > 1 else 0.0
+
+    @property
+    def rate_hz(self) -> float:
+        """Median sample rate; 0 with fewer than two samples."""
+        return 1e9 / float(np.median(np.diff(self.matrix[:, 0]))) if len(self) > 1 else 0.0
+
+
+@dataclass(frozen=True)
+class Recording:
+    """A whole recording as the importers give it.
+
+    ``assumed`` are sentences for the user: rate, units and mounting that the file does not say
+    ("256 Hz assumed: the file has no times"). ``spec`` is the source that made it, if it says so
+    (a simulator's recording), so that its truth can be computed again.
+    """
+
+    name: str
+    format: str
+    sensors: tuple[Samples, ...]
+    assumed: tuple[str, ...] = ()
+    spec: str | None = None
+    dropped_rows: int = 0
+
+    @property
+    def duration_s(self) -> float:
+        """Seconds from the first stamp of any sensor to the last of any."""
+        if not self.sensors:
+            return 0.0
+        start = min(s.device_ns for s in self.sensors)
+        end = max(s.device_ns + int(s.matrix[-1, 0]) for s in self.sensors if len(s))
+        return (end - start) * 1e-9
+
+
+Truth = Callable[[str, Floats], tuple[Floats, Floats]]
+"""A simulator's truth: (sensor, seconds since its first sample [n]) → position_n [n, 3] m from the
+start, q_nb [n, 4]. Closed form, so any instant can be asked for."""
+
+
+@dataclass(frozen=True)
+class SourceInfo:
+    """What a source says of itself before its first sample."""
+
+    name: str
+    format: str
+    sensors: Mapping[str, Role] = field(default_factory=dict)
+    rate_hz: float = 0.0  # nominal; 0 unknown
+    assumed: tuple[str, ...] = ()
+    dropped: Mapping[str, int] = field(default_factory=dict)
+    duration_s: float | None = None  # None: live, no end known
+    truth: Truth | None = None
+
+
+class InputError(ValueError):
+    """The user's input is wrong. The message is one line: the thing, what came, what was expected."""
+
+
+# --- rows ----------------------------------------------------------------------------------------
+
+
+class RowColumn(IntEnum):
+    """Columns of a track's rows, float64 [n, 12]: one row per sample."""
+
+    NORTH = 0
+    EAST = 1
+    DOWN = 2
+    VN = 3
+    VE = 4
+    VD = 5
+    QW = 6
+    QX = 7
+    QY = 8
+    QZ = 9
+    PHASE = 10
+    STATISTIC = 11
+
+
+ROW_WIDTH = len(RowColumn)
+POSITION = slice(0, 3)
+VELOCITY = slice(3, 6)
+ATTITUDE = slice(6, 10)
+
+
+class Stride(NamedTuple):
+    """From one initial contact to the next of the same foot (so: a stance, then a swing).
+
+    The first stride of a segment has no contact before it: it starts where its swing starts and
+    its ``stance_s`` is 0. ``length_m`` is horizontal, start to end. ``turn_rad`` is positive to
+    the left (opposite to NED yaw). ``lift_m`` is the highest point of the sensor above the line
+    from start to end; it is not toe clearance. ``end_n`` is the footprint.
+    """
+
+    number: int
+    start_s: float
+    end_s: float
+    length_m: float
+    duration_s: float
+    swing_s: float
+    stance_s: float
+    lift_m: float
+    turn_rad: float
+    end_n: Vector
+    heading_rad: float  # NED yaw of the toe at the footprint
+
+
+# --- commands: what a person asks for, frozen, numbered with the samples --------------------------
+
+
+@dataclass(frozen=True)
+class SetCandidate:
+    """Move sliders: these settings become the candidate track's."""
+
+    changes: tuple[tuple[str, float | bool | str], ...]
+
+
+@dataclass(frozen=True)
+class ReplaceCandidate:
+    """A whole record (a profile, the reset button, the best gains) becomes the candidate's."""
+
+    settings: Settings
+    reason: str
+
+
+@dataclass(frozen=True)
+class ApplyCandidate:
+    """The candidate becomes the main track, past and present."""
+
+
+@dataclass(frozen=True)
+class DropCandidate:
+    """The candidate goes, the sliders go back to the main track's settings."""
+
+
+@dataclass(frozen=True)
+class Undo:
+    """Back to the settings before the last apply (another Undo goes further)."""
+
+
+@dataclass(frozen=True)
+class SetApplyAtOnce:
+    """Whether a moved slider applies by itself."""
+
+    on: bool
+
+
+@dataclass(frozen=True)
+class KeepAs:
+    """Remember the main track's settings as slot ``A`` or ``B``."""
+
+    slot: str
+
+
+@dataclass(frozen=True)
+class SwapAB:
+    """Apply the other one of A and B."""
+
+
+@dataclass(frozen=True)
+class ResetHeading:
+    """Turn the whole walk so that the toe now points north (or to the reference)."""
+
+
+@dataclass(frozen=True)
+class RestartHere:
+    """Forget the walk so far and start again at the next sample."""
+
+
+SessionCommand = (
+    SetCandidate | ReplaceCandidate | ApplyCandidate | DropCandidate | Undo
+    | SetApplyAtOnce | KeepAs | SwapAB | ResetHeading | RestartHere
+)  # fmt: skip
+
+
+@dataclass(frozen=True)
+class FindGains:
+    """Sweep k_s × k_d over the walk so far and offer the best as the candidate."""
+
+
+@dataclass(frozen=True)
+class LoadProfile:
+    """Make a saved profile the candidate."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class SaveProfile:
+    """Save the main track's settings under a name."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Pause:
+    """Hold or go on with a replay."""
+
+    on: bool
+
+
+@dataclass(frozen=True)
+class Step:
+    """While paused: a few samples on."""
+
+    samples: int = 1
+
+
+@dataclass(frozen=True)
+class Speed:
+    """Replay at this multiple of the recorded pace, 0.1 to 8; 0 is as fast as possible."""
+
+    factor: float
+
+
+@dataclass(frozen=True)
+class Seek:
+    """Go to this second of a recording."""
+
+    t_s: float
+
+
+@dataclass(frozen=True)
+class Loop:
+    """Start again at the end of a recording."""
+
+    on: bool
+
+
+ReplayCommand = Pause | Step | Speed | Seek | Loop
+Command = SessionCommand | FindGains | LoadProfile | SaveProfile | ReplayCommand
+
+
+class Order(NamedTuple):
+    """A command with who gave it and when: what the door and the scene hand over."""
+
+    command: Command
+    who: str
+    host_ns: int
+
+
+# --- what the page is told ------------------------------------------------------------------------
+
+
+class TrailPiece(NamedTuple):
+    """Settled line segments, float32 [k, 2, 3] in *n*. Same ``key``: same content, for good."""
+
+    key: str
+    segments: NDArray[np.float32]
+
+
+class Trail(NamedTuple):
+    """A decimated path: settled pieces, the open piece that grows, and the provisional newest stride."""
+
+    pieces: tuple[TrailPiece, ...]
+    growing: NDArray[np.float32]  # [k, 2, 3]
+    provisional: NDArray[np.float32]  # [k, 2, 3]: not yet corrected by a zero-velocity update
+
+
+class Footprint(NamedTuple):
+    """Where a stride ended."""
+
+    number: int
+    position_n: Vector
+    heading_rad: float
+
+
+class Graph(NamedTuple):
+    """The last seconds of one foot, decimated for a plot: arrays of one length."""
+
+    t_s: Floats
+    statistic: Floats  # |ω|, rad/s
+    swing: Floats  # 0 or 1
+    speed_mps: Floats
+    height_m: Floats
+
+
+class Health(NamedTuple):
+    """Counters of one sensor since the start."""
+
+    rate_hz: float
+    taken: int
+    dropped: Mapping[str, int]  # reason in words → samples
+    saturated: int
+    segments: int
+
+
+class FootView(NamedTuple):
+    """One foot of one track, now."""
+
+    sensor: str
+    role: Role
+    t_s: float
+    position_n: Vector
+    velocity_n: Vector
+    q_nb: Quaternion
+    phase: GaitPhase
+    levelled: bool  # False until the still start has been found
+    strides: int
+    distance_m: float
+    speed_mps: float  # of the last stride; 0 when standing
+    cadence_spm: float  # steps a minute = 2 × 60 / stride duration; 0 when standing
+    height_m: float
+    to_start_m: float
+    trail: Trail
+    footprints: tuple[Footprint, ...]  # the newest few
+    error_m: float | None  # distance to the simulator's truth
+
+
+class TrackView(NamedTuple):
+    """One named track, now."""
+
+    name: str
+    settings: Settings
+    feet: tuple[FootView, ...]
+
+
+class Sweep(NamedTuple):
+    """"Find gains": closure in metres over a grid of gains."""
+
+    gains_stance: Floats  # [a]
+    gains_swing: Floats  # [b]
+    closure_m: Floats  # [a, b]
+    best: tuple[float, float]
+
+
+class Change(NamedTuple):
+    """One applied change, for the log on the page."""
+
+    number: int  # it took effect after this many samples
+    host_ns: int
+    who: str
+    what: str
+
+
+@dataclass(frozen=True)
+class Snapshot:
+    """All that the page needs of the session at one instant. The scene is a function of it."""
+
+    number: int  # samples and commands taken
+    t_s: float
+    main: TrackView
+    candidate: TrackView | None
+    truth: Mapping[str, Trail]  # the simulator's truth, by sensor
+    candidate_settings: Settings  # what the sliders show
+    pending: bool  # the candidate is being re-estimated
+    apply_at_once: bool
+    undo_depth: int
+    slots: Mapping[str, Settings]  # A, B
+    slot_now: str | None
+    changes: tuple[Change, ...]
+    graphs: Mapping[str, Graph]
+    health: Mapping[str, Health]
+    hindsight_from_s: float  # re-estimation reaches back to here
+    stored_bytes: int
+    budget_bytes: int
+    epoch: int  # rises when the walk starts again: everything drawn before is void
+
+
+class Link(StrEnum):
+    """What the source is doing."""
+
+    WAITING = "waiting"
+    LIVE = "live"
+    PAUSED = "paused"
+    ENDED = "ended"
+    LOST = "lost"
+
+
+@dataclass(frozen=True)
+class Status:
+    """What the shell knows and the session cannot: clocks, files, the source's state."""
+
+    source: SourceInfo
+    link: Link
+    stale_s: float = 0.0  # seconds without a sample while LIVE; 0 when fresh
+    message: str = ""  # one line for the person (an error, or what is being prepared)
+    replay: bool = False  # pause, step, seek and speed are possible
+    speed: float = 1.0
+    loop: bool = False
+    position_s: float = 0.0
+    sweep: Sweep | None = None
+    sweep_progress: float | None = None  # 0…1 while it runs
+    profiles: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class GuiRule:
+    """What a browser may write into one control: the door enforces it."""
+
+    kind: str  # "number" | "bool" | "text" | "choice" | "button"
+    low: float = -math.inf
+    high: float = math.inf
+    choices: tuple[str, ...] = ()
+    max_length: int = 80

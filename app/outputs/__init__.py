@@ -1,0 +1,1 @@
+"""Edge: what a walk leaves behind: files."""

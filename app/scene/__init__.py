@@ -1,0 +1,1 @@
+"""Edge: the only importer of viser. Draws a snapshot, hands over commands."""

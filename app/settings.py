@@ -1,0 +1,193 @@
+"""Heart: the settings of a track: names, units, limits, sentences, and what a profile means."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field, fields, replace
+from typing import Any
+
+Value = float | bool | str
+
+
+@dataclass(frozen=True)
+class Limit:
+    """What a setting may be, and how a person is told. ``safe`` is the slider's range."""
+
+    label: str
+    symbol: str
+    unit: str
+    sentence: str
+    low: float = 0.0
+    high: float = 1.0
+    safe: tuple[float, float] = (0.0, 1.0)
+    step: float = 0.01
+    choices: tuple[str, ...] = ()
+
+
+def _setting(default: Value, limit: Limit) -> Any:
+    return field(default=default, metadata={"limit": limit})
+
+
+def _checked(name: str, value: object, default: object, limit: Limit) -> Value:
+    if isinstance(default, bool):
+        if not isinstance(value, bool):
+            raise ValueError(f"{name} = {value!r}: expected true or false")
+        return value
+    if isinstance(default, str):
+        if value not in limit.choices:
+            raise ValueError(f"{name} = {value!r}: expected one of {', '.join(limit.choices)}")
+        return str(value)
+    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+        raise ValueError(f"{name} = {value!r}: expected a number")
+    if not limit.low <= value <= limit.high:
+        raise ValueError(f"{name} = {value:g}: expected {limit.low:g} to {limit.high:g} {limit.unit}".rstrip())
+    return float(value)
+
+
+@dataclass(frozen=True)
+class Settings:
+    """One track's settings. Out-of-range, unknown or non-finite values raise ``ValueError``.
+
+    Values are SI and radians. The defaults are the built-in profile ``papers`` (2012 paper, Table
+    II; thresholds: see docs/method.md).
+    """
+
+    estimator: str = _setting(
+        "papers",
+        Limit("Estimator", "", "", "Which method turns samples into a walk.", choices=("papers",)),
+    )
+    gain_stance: float = _setting(
+        1.05,
+        Limit(
+            "Stance gain", "k_s", "1/s",
+            "How fast gravity (and the magnetometer) pull the orientation straight while the foot"
+            " stands; 0 trusts the gyro alone.",
+            0.0, 50.0, (0.0, 3.0), 0.01,
+        ),
+    )  # fmt: skip
+    gain_swing: float = _setting(
+        0.0,
+        Limit(
+            "Swing gain", "k_d", "1/s",
+            "The same pull while the foot swings; acceleration then disturbs gravity, so 0 is best"
+            " on real walks.",
+            0.0, 50.0, (0.0, 3.0), 0.01,
+        ),
+    )  # fmt: skip
+    threshold_radps: float = _setting(
+        1.0,
+        Limit(
+            "Rate threshold", "Ω_th", "rad/s",
+            "Below this angular rate the foot counts as standing; too low misses stances, too high"
+            " cuts swings short.",
+            0.01, 20.0, (0.1, 4.0), 0.01,
+        ),
+    )  # fmt: skip
+    min_duration_s: float = _setting(
+        0.06,
+        Limit(
+            "Minimum duration", "Γ", "s",
+            "How long the rate must stay on the other side of the threshold before the phase flips;"
+            " it hides short dips.",
+            0.0, 1.0, (0.0, 0.3), 0.005,
+        ),
+    )  # fmt: skip
+    magnetometer: bool = _setting(
+        False,
+        Limit(
+            "Magnetometer", "", "",
+            "Whether the compass holds the heading; indoors iron bends it, so the gyro alone is"
+            " often straighter.",
+        ),
+    )  # fmt: skip
+    gravity_from_rest: bool = _setting(
+        True,
+        Limit(
+            "Gravity from rest", "", "",
+            "Take gravity as the sensor reads it in the still start: no sensor is scaled exactly.",
+        ),
+    )  # fmt: skip
+    gravity_mps2: float = _setting(
+        9.80665,
+        Limit(
+            "Gravity", "g", "m/s²",
+            "The gravity to subtract when it is not taken from rest; 0.1 too much sinks each stride"
+            " by centimetres.",
+            8.0, 11.5, (9.5, 10.0), 0.001,
+        ),
+    )  # fmt: skip
+    bias_from_rest: bool = _setting(
+        True,
+        Limit(
+            "Gyro bias from rest", "", "",
+            "Subtract the rate the gyro shows in the still start, if it was truly still.",
+        ),
+    )  # fmt: skip
+    still_window_s: float = _setting(
+        0.5,
+        Limit(
+            "Still start", "", "s",
+            "How long the foot must stand still at the start to find level, gravity and gyro bias.",
+            0.05, 10.0, (0.1, 3.0), 0.05,
+        ),
+    )  # fmt: skip
+    start_heading_rad: float = _setting(
+        0.0,
+        Limit(
+            "Start heading", "ψ_0", "rad",
+            "Turns the whole walk about the vertical: the heading at the start, or with the"
+            " magnetometer, that of magnetic north.",
+            -math.pi, math.pi, (-math.pi, math.pi), math.radians(1),
+        ),
+    )  # fmt: skip
+
+    def __post_init__(self) -> None:
+        for f in fields(self):
+            value = _checked(f.name, getattr(self, f.name), f.default, f.metadata["limit"])
+            object.__setattr__(self, f.name, value)
+
+    def with_changes(self, changes: Mapping[str, Value]) -> Settings:
+        """These settings with some changed; an unknown key or a bad value raises ``ValueError``."""
+        known = {f.name for f in fields(self)}
+        for key in changes:
+            if key not in known:
+                raise ValueError(f"unknown setting {key!r}: expected one of {', '.join(sorted(known))}")
+        return replace(self, **changes)  # type: ignore[arg-type]
+
+    def differences(self, other: Settings) -> str:
+        """In words, what changes from these settings to ``other``: ``gain_stance 1.05 → 2``."""
+        return ", ".join(
+            f"{f.name} {_short(getattr(self, f.name))} → {_short(getattr(other, f.name))}"
+            for f in fields(self)
+            if getattr(self, f.name) != getattr(other, f.name)
+        )
+
+
+LIMITS: dict[str, Limit] = {f.name: f.metadata["limit"] for f in fields(Settings)}
+BUILT_IN: dict[str, Settings] = {"papers": Settings()}
+
+
+def parse(name: str, text: str) -> Value:
+    """The value of a setting as typed on a command line (``--set gain_stance=1.2``).
+
+    Raises ``ValueError`` that names what came and what was expected.
+    """
+    if name not in LIMITS:
+        raise ValueError(f"unknown setting {name!r}: expected one of {', '.join(sorted(LIMITS))}")
+    default = getattr(BUILT_IN["papers"], name)
+    if isinstance(default, bool):
+        words = {"true": True, "on": True, "yes": True, "1": True, "false": False, "off": False, "no": False, "0": False}
+        if text.lower() not in words:
+            raise ValueError(f"{name}={text!r}: expected on or off")
+        return words[text.lower()]
+    if isinstance(default, str):
+        return text
+    try:
+        return float(text)
+    except ValueError:
+        raise ValueError(f"{name}={text!r}: expected a number in {LIMITS[name].unit or 'its unit'}") from None
+
+
+def _short(value: Value) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value).lower() if isinstance(value, bool) else value

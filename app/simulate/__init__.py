@@ -1,0 +1,1 @@
+"""Heart: simulated walkers; their truth in closed form. Never calls the estimator."""
