@@ -53,7 +53,7 @@ import numba  # noqa: E402  (the folder has to be known first)
 
 def kernel(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Compile ``function`` on its first call, cached, without the interpreter lock."""
-    return numba.njit(cache=True, nogil=True, fastmath=False, parallel=False)(function)  # type: ignore[no-any-return]
+    return numba.njit(cache=True, nogil=True, fastmath=False, parallel=False)(function)
 
 
 def is_compiled(function: Callable[..., object]) -> bool:

@@ -429,7 +429,7 @@ class TrackView(NamedTuple):
 
 
 class Sweep(NamedTuple):
-    """"Find gains": closure in metres over a grid of gains."""
+    """What "find gains" found: closure in metres over a grid of gains."""
 
     gains_stance: Floats  # [a]
     gains_swing: Floats  # [b]

@@ -41,7 +41,8 @@ def _checked(name: str, value: object, default: object, limit: Limit) -> Value:
     if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
         raise ValueError(f"{name} = {value!r}: expected a number")
     if not limit.low <= value <= limit.high:
-        raise ValueError(f"{name} = {value:g}: expected {limit.low:g} to {limit.high:g} {limit.unit}".rstrip())
+        span = f"{limit.low:g} to {limit.high:g} {limit.unit}".rstrip()
+        raise ValueError(f"{name} = {value:g}: expected {span}")
     return float(value)
 
 
@@ -177,7 +178,8 @@ def parse(name: str, text: str) -> Value:
         raise ValueError(f"unknown setting {name!r}: expected one of {', '.join(sorted(LIMITS))}")
     default = getattr(BUILT_IN["papers"], name)
     if isinstance(default, bool):
-        words = {"true": True, "on": True, "yes": True, "1": True, "false": False, "off": False, "no": False, "0": False}
+        words = {"true": True, "on": True, "yes": True, "1": True}
+        words |= {"false": False, "off": False, "no": False, "0": False}
         if text.lower() not in words:
             raise ValueError(f"{name}={text!r}: expected on or off")
         return words[text.lower()]
@@ -190,4 +192,6 @@ def parse(name: str, text: str) -> Value:
 
 
 def _short(value: Value) -> str:
-    return f"{value:.4g}" if isinstance(value, float) else str(value).lower() if isinstance(value, bool) else value
+    if isinstance(value, float):
+        return f"{value:.4g}"
+    return str(value).lower() if isinstance(value, bool) else value

@@ -1,0 +1,36 @@
+# make run      start the walk viewer          make test    every test (CHROMIUM=skip: without a browser)
+# make setup    .venv and nothing else         make bench   performance and accuracy     make soak   the long runs
+# make demo     recordings/ and assets/ anew   make lock    requirements.txt anew
+BIN := .venv/bin
+
+.PHONY: run setup test chromium bench soak demo lock
+
+run: setup
+	@$(BIN)/stridescope walk
+
+setup:
+	@tools/setup.sh
+
+chromium:
+	@tools/chromium.sh
+
+test: setup chromium
+	$(BIN)/ruff check
+	$(BIN)/ruff format --check
+	$(BIN)/mypy
+	$(BIN)/python -m pytest
+
+bench: setup
+	@$(BIN)/python benchmarks/bench.py
+
+soak: setup
+	@$(BIN)/python benchmarks/soak.py
+
+demo: setup
+	$(BIN)/python tools/make_recordings.py
+	$(BIN)/python tools/make_shoe.py
+
+lock: setup
+	$(BIN)/python -m pip --disable-pip-version-check install --quiet "uv>=0.5,<1"
+	$(BIN)/uv pip compile --universal --generate-hashes --extra dev --no-emit-index-url --quiet \
+		--custom-compile-command "make lock" --output-file requirements.txt pyproject.toml
