@@ -5,11 +5,6 @@ cd "$(dirname "$0")/.."
 
 fits='import sys; sys.exit(not (3, 11) <= sys.version_info < (3, 15))'
 
-# What .venv was made from, and where: a moved checkout or another Python needs a new one.
-state() {
-    { cat requirements.txt pyproject.toml tools/setup.sh; pwd; .venv/bin/python --version; } 2>/dev/null | cksum
-}
-
 choose_python() {
     for python in ${PYTHON:-python3 python3.14 python3.13 python3.12 python3.11}; do
         if "$python" -c "$fits" 2>/dev/null; then
@@ -17,20 +12,36 @@ choose_python() {
             return
         fi
     done
-    echo "setup: ${PYTHON:-python3} is $("${PYTHON:-python3}" --version 2>/dev/null || echo "not there"):" \
-        "expected Python 3.11 to 3.14 (make setup PYTHON=/path/to/python3.12)" >&2
+    python=${PYTHON:-python3}
+    came=$("$python" --version 2>/dev/null || echo "not there")
+    echo "setup: $python is $came: expected Python 3.11 to 3.14 (make setup PYTHON=/path/to/python3.12)" >&2
     exit 2
 }
 
-[ "$(cat .venv/.ready 2>/dev/null)" = "$(state)" ] && exit 0
+# A .venv made elsewhere and moved here, or left by a Python since removed, is of no use.
+usable() {
+    .venv/bin/python -c "$fits" 2>/dev/null && grep -qF "$(pwd)/.venv/bin/" .venv/bin/pip &&
+        { [ -z "${PYTHON:-}" ] || [ "$("$PYTHON" --version)" = "$(.venv/bin/python --version)" ]; }
+}
 
-python=$(choose_python)
-echo "setup: installing into .venv (once; about a minute)"
-if ! said=$("$python" -m venv --clear .venv 2>&1); then
-    echo "setup: $python -m venv: $(echo "$said" | tail -n 1): expected a Python with venv (Debian: python3-venv)" >&2
-    exit 2
+pip() {
+    .venv/bin/python -m pip --disable-pip-version-check --no-input install --quiet "$@"
+}
+
+wanted=$(cat requirements.txt pyproject.toml | cksum)
+usable || rm -f .venv/.ready
+[ "$(cat .venv/.ready 2>/dev/null)" = "$wanted" ] && exit 0
+
+echo "setup: installing into .venv (about a minute, this once)"
+if ! usable; then
+    python=$(choose_python)
+    if ! said=$("$python" -m venv --clear .venv 2>&1); then
+        echo "setup: $python cannot make .venv: expected venv with pip (Debian: apt-get install python3-venv):" \
+            "$(echo "$said" | tail -n 1)" >&2
+        exit 2
+    fi
 fi
-pip() { .venv/bin/python -m pip --disable-pip-version-check --no-input install --quiet "$@"; }
+rm -f .venv/.ready
 pip --require-hashes --only-binary :all: --requirement requirements.txt
 pip --no-deps --no-build-isolation --editable .
-state >.venv/.ready
+echo "$wanted" >.venv/.ready
