@@ -1,0 +1,96 @@
+"""Where compiled kernels are kept, and when they are thrown away."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import textwrap
+from pathlib import Path
+
+import pytest
+
+from app import compiled
+
+RUN_A_KERNEL = """
+import os
+from pathlib import Path
+from app import compiled, rotation
+turn = rotation.from_yaw(0.0)
+assert turn == (1.0, 0.0, 0.0, 0.0) and compiled.is_compiled(rotation.from_yaw)
+print(os.environ["NUMBA_CACHE_DIR"])
+print(len(list(Path(os.environ["NUMBA_CACHE_DIR"]).rglob("*.nbc"))))
+"""
+
+
+@pytest.fixture
+def house(tmp_path: Path) -> Path:
+    """A small app: step → turn (a called kernel) → words (a constant both froze); page sees them all."""
+    sources = {
+        "compiled.py": "def kernel(function): return function",
+        "words.py": "GRAVITY = 9.8",
+        "estimator/turn.py": """
+            from app.compiled import kernel
+            from app import words
+            @kernel
+            def turn(x): return x * words.GRAVITY""",
+        "estimator/step.py": """
+            from app.compiled import kernel
+            from app.estimator.turn import turn
+            @kernel
+            def step(x): return turn(x)""",
+        "page.py": "from app.estimator import step",
+    }
+    for name, source in sources.items():
+        path = tmp_path / name
+        path.parent.mkdir(exist_ok=True)
+        path.write_text(textwrap.dedent(source), "utf-8")
+    return tmp_path
+
+
+@pytest.mark.parametrize("name", ["compiled.py", "words.py", "estimator/turn.py", "estimator/step.py"])
+def test_hash_follows_every_file_a_kernel_sees(house: Path, name: str) -> None:
+    before = compiled.sources_hash(house)
+    with (house / name).open("a", encoding="utf-8") as file:
+        file.write("\n# changed\n")
+    assert compiled.sources_hash(house) != before
+
+
+def test_hash_leaves_alone_what_no_kernel_sees(house: Path) -> None:
+    before = compiled.sources_hash(house)
+    (house / "page.py").write_text("COLOUR = 'blue'", "utf-8")
+    assert compiled.sources_hash(house) == before
+
+
+def run_a_kernel(home: Path, temporary: Path) -> tuple[Path, int]:
+    """A kernel run in a process of its own: its cache folder and how many kernels lay in it."""
+    temporary.mkdir(exist_ok=True)
+    kept = {k: v for k, v in os.environ.items() if k not in {"XDG_CACHE_HOME", "NUMBA_CACHE_DIR"}}
+    environment = kept | {"HOME": str(home), "TMPDIR": str(temporary)}
+    command = [sys.executable, "-c", RUN_A_KERNEL]
+    ran = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=100, check=False)
+    assert ran.returncode == 0, ran.stderr
+    folder, kernels = ran.stdout.split("\n")[:2]
+    return Path(folder), int(kernels)
+
+
+def test_kernels_are_kept_in_the_users_cache_folder(tmp_path: Path) -> None:
+    home = tmp_path / "home"
+    home.mkdir()
+    folder, kernels = run_a_kernel(home, tmp_path / "tmp")
+    assert home in folder.parents
+    assert folder.name == compiled.sources_hash()
+    assert kernels > 0
+
+
+def test_a_home_that_cannot_be_written_still_runs_and_leaves_nothing(tmp_path: Path) -> None:
+    (tmp_path / "file").touch()  # no folder can be made below a file, not even by root
+    folder, kernels = run_a_kernel(tmp_path / "file" / "home", tmp_path / "tmp")
+    assert folder.parent == tmp_path / "tmp"
+    assert kernels > 0
+    assert not folder.exists()
+
+
+def test_numba_reads_the_folder_chosen_here() -> None:
+    numba = sys.modules["numba"]
+    assert os.environ["NUMBA_CACHE_DIR"] == numba.config.CACHE_DIR
