@@ -1,17 +1,21 @@
 """Edge to the compiler: the only importer of numba, and where its cache lives.
 
-numba's own cache lies beside the sources and does not notice a change in a *called* function of
-another file. So before numba is imported its cache is sent to a per-user folder whose name is a
-hash of every source that holds kernels and of the numba version; where no such folder can be
-written, to a temporary one.
+numba's own cache lies beside the sources and does not notice a change in another file: in a *called*
+function, or in a constant that a kernel froze. So before numba is imported its cache is sent to a
+per-user folder whose name is a hash of every source a kernel can see and of the numba version; where
+no such folder can be written, to a temporary one that goes at exit.
 """
 
 from __future__ import annotations
 
+import ast
+import atexit
 import hashlib
 import importlib.metadata
 import os
 import platform
+import re
+import shutil
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -24,25 +28,48 @@ _R = TypeVar("_R")
 _APP = Path(__file__).parent
 
 
+def _imported(path: Path, root: Path) -> list[Path]:
+    names: set[str] = set()
+    for node in ast.walk(ast.parse(path.read_bytes())):
+        if isinstance(node, ast.ImportFrom):
+            names |= {f"{node.module}", *(f"{node.module}.{alias.name}" for alias in node.names)}
+        elif isinstance(node, ast.Import):
+            names |= {alias.name for alias in node.names}
+    parts = (name.split(".") for name in names)
+    files = (root.joinpath(*part[1:]).with_suffix(".py") for part in parts if part[0] == "app" and part[1:])
+    return [file for file in files if file.is_file()]
+
+
+def kernel_sources(root: Path) -> list[Path]:
+    """The files that hold kernels, and all of ours that those import, directly or not."""
+    waiting = [path for path in root.rglob("*.py") if re.search(rb"@kernel\b|\bkernel\(", path.read_bytes())]
+    found: set[Path] = set()
+    while waiting:
+        path = waiting.pop()
+        if path not in found:
+            found.add(path)
+            waiting += _imported(path, root)
+    return sorted(found)
+
+
 def sources_hash(root: Path = _APP) -> str:
-    """A short hash of all sources that hold kernels, of numba's version and of Python's."""
+    """A short hash of all sources that a kernel can see, of numba's version and of Python's."""
     digest = hashlib.sha256(f"{importlib.metadata.version('numba')} {platform.python_version()}".encode())
-    for path in sorted(root.rglob("*.py")):
-        source = path.read_bytes()
-        if b"app.compiled" in source or path == root / "compiled.py":
-            digest.update(str(path.relative_to(root)).encode() + b"\0" + source)
+    for path in kernel_sources(root):
+        digest.update(str(path.relative_to(root)).encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
 def choose_cache_folder(name: str) -> Path:
-    """A writable folder for compiled kernels: the user's, or else a temporary one."""
+    """A writable folder for compiled kernels: the user's, or else one that is removed at exit."""
     folder = Path(platformdirs.user_cache_dir("stridescope", appauthor=False)) / "kernels" / name
     try:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
     except OSError:
-        return Path(tempfile.mkdtemp(prefix="stridescope-kernels-"))
+        folder = Path(tempfile.mkdtemp(prefix="stridescope-kernels-"))
+        atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
 
 
