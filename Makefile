@@ -30,7 +30,11 @@ demo: setup
 	$(BIN)/python tools/make_recordings.py
 	$(BIN)/python tools/make_shoe.py
 
+# requirements.txt is all; requirements-run.txt the part of it that the program needs without its tests
+LOCK := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url \
+	--custom-compile-command "make lock" pyproject.toml --extra install
+
 lock: setup
 	$(BIN)/python -m pip --disable-pip-version-check install --quiet "uv>=0.5,<1"
-	$(BIN)/uv pip compile --universal --generate-hashes --extra dev --no-emit-index-url --quiet \
-		--custom-compile-command "make lock" --output-file requirements.txt pyproject.toml
+	$(LOCK) --upgrade --extra dev --output-file requirements.txt
+	$(LOCK) --constraint requirements.txt --no-annotate --output-file requirements-run.txt
