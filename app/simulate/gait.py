@@ -21,8 +21,9 @@ TOE_OFF, HEEL_STRIKE, FOOT_FLAT, FLAT_SHARE = 0.1, 0.5, 0.6, 0.4
 PRESWING_RATE, SWING_RATE, CONTACT_RATE = -7.5, 3.5, -6.5
 #: σ of the Gaussian (eq. 14) and half the swing, shares of a cycle.
 SIGMA, HALF_SWING = 0.05, 0.2
-#: The smooth model rounds the papers' corners in pitch over ± this share of a cycle.
-ROUNDING = 0.04
+#: The smooth model rounds the papers' corners in pitch over ± this share of a cycle, has lifted the foot
+#: by ``RISEN`` and lowers it from ``FALLING``.
+ROUNDING, RISEN, FALLING = 0.04, 0.16, 0.4
 
 
 class Profile(NamedTuple):
@@ -112,26 +113,25 @@ def papers_reach() -> float:
 def smooth_gait(since_heel_off_s: Floats, cycle_s: float, lift_m: float) -> Profile:
     """The same phases and angles without jumps: pitch, travel, lift and turn are twice differentiable.
 
-    Pitch is the papers' with rounded corners; travel and turn follow a minimum-jerk step over the
-    swing, lift a bump of the same order; while the foot is flat it stands exactly still.
+    Pitch is the papers' with rounded corners; travel and turn are a minimum-jerk step over the
+    swing. The lift begins at heel-off and ends at foot-flat: a shoe that tips about its toe raises
+    the instep, and would dig into the floor if it did not. While flat, the foot stands exactly still.
     """
     u = since_heel_off_s / cycle_s
     pitch, pitch_rate = _rounded_pitch(u)
-    swing = HEEL_STRIKE - TOE_OFF
-    step, step_rate, step_acceleration = minimum_jerk((u - TOE_OFF) / swing)
-    bump, bump_rate, bump_acceleration = smooth_bump((u - TOE_OFF) / swing)
-    per_s = 1.0 / (swing * cycle_s)
+    travel = _step_between(u, TOE_OFF, HEEL_STRIKE)
+    rise, fall = _step_between(u, 0.0, RISEN), _step_between(u, FALLING, FOOT_FLAT)
     return Profile(
         pitch_rad=pitch,
         pitch_radps=pitch_rate / cycle_s,
-        advance=step,
-        advance_rate=step_rate * per_s,
-        advance_acceleration=step_acceleration * per_s**2,
-        lift_m=lift_m * bump,
-        lift_mps=lift_m * bump_rate * per_s,
-        lift_mps2=lift_m * bump_acceleration * per_s**2,
-        turn=step,
-        turn_rate=step_rate * per_s,
+        advance=travel[0],
+        advance_rate=travel[1] / cycle_s,
+        advance_acceleration=travel[2] / cycle_s**2,
+        lift_m=lift_m * (rise[0] - fall[0]),
+        lift_mps=lift_m * (rise[1] - fall[1]) / cycle_s,
+        lift_mps2=lift_m * (rise[2] - fall[2]) / cycle_s**2,
+        turn=travel[0],
+        turn_rate=travel[1] / cycle_s,
     )
 
 
@@ -148,18 +148,18 @@ def _rounded_pitch(u: Floats) -> tuple[Floats, Floats]:
     return np.where(flat, 0.0, pitch), np.where(flat, 0.0, rate)
 
 
+def _step_between(u: Floats, start: float, end: float) -> tuple[Floats, Floats, Floats]:
+    """A minimum-jerk step from ``start`` to ``end``, and its derivatives by u."""
+    width = end - start
+    value, slope, bend = minimum_jerk((u - start) / width)
+    return value, slope / width, bend / width**2
+
+
 def minimum_jerk(x: Floats) -> tuple[Floats, Floats, Floats]:
     """From 0 to 1 over 0 ≤ x ≤ 1 with rest at both ends, and its two derivatives."""
     x = np.clip(x, 0.0, 1.0)
     rest = x * (1.0 - x)
     return x**3 * (10.0 + x * (6.0 * x - 15.0)), 30.0 * rest**2, 60.0 * rest * (1.0 - 2.0 * x)
-
-
-def smooth_bump(x: Floats) -> tuple[Floats, Floats, Floats]:
-    """From 0 up to 1 at x = ½ and back, with rest at both ends, and its two derivatives: 64 x³(1 − x)³."""
-    x = np.clip(x, 0.0, 1.0)
-    w, slope = x * (1.0 - x), 1.0 - 2.0 * x
-    return 64.0 * w**3, 192.0 * w**2 * slope, 384.0 * w * (slope**2 - w)
 
 
 def rounded_ramp(x: Floats) -> tuple[Floats, Floats]:
