@@ -1,0 +1,70 @@
+"""Heart: which rows count: finite, within any sensor's reach, and later than the last one kept.
+
+The same rule as a live intake's. Gaps stay gaps. A magnetometer that reads nothing leaves the row.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.formats.raw import NO_STAMP, RawFoot
+from app.motion import SAMPLE_WIDTH, Floats, InputError, Ints, Samples, role_of
+
+NOT_FINITE = "not a finite number"
+REPEATED = "repeated time"
+BACKWARD = "time went backward"
+
+_LONGEST_NS = 2**53  # 104 days: beyond it ELAPSED_NS would not be exact
+_MOST = 1e6  # m/s², rad/s or µT; no sensor reads that, and its square would spoil every sum
+
+
+def clean(raw: RawFoot) -> Samples:
+    """The rows that count, and how many were dropped for which reason; ``InputError`` if none is left."""
+    finite = _usable(raw)
+    later = _later(raw.stamps_ns[finite])
+    dropped = {NOT_FINITE: int(len(finite) - finite.sum())}
+    dropped |= {REPEATED: int((later == 0).sum()), BACKWARD: int((later < 0).sum())}
+    rows = np.flatnonzero(finite)[later > 0]
+    if not len(rows):
+        raise InputError(f"{raw.sensor}: none of {len(finite)} rows is finite, expected samples")
+    stamps_ns = raw.stamps_ns[rows]
+    return Samples(
+        sensor=raw.sensor,
+        role=role_of(raw.sensor),
+        device_ns=int(stamps_ns[0]),
+        matrix=_matrix(raw, rows, stamps_ns),
+        saturation=np.zeros(len(rows), np.uint16),
+        dropped={reason: count for reason, count in dropped.items() if count},
+    )
+
+
+def _usable(raw: RawFoot) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
+    with np.errstate(invalid="ignore"):
+        values = (np.abs(raw.force) < _MOST).all(axis=1) & (np.abs(raw.rate) < _MOST).all(axis=1)
+    usable: np.ndarray[tuple[int], np.dtype[np.bool_]] = values & (raw.stamps_ns != NO_STAMP)
+    if usable.any():  # a first stamp sets the start; what lies beyond the clock's reach is unreadable
+        first = int(raw.stamps_ns[np.argmax(usable)])
+        usable &= raw.stamps_ns.astype(np.float64) - first < _LONGEST_NS
+    return usable
+
+
+def _later(stamps_ns: Ints) -> Ints:
+    """1 where a stamp is later than all before it, 0 where it repeats the latest, −1 where it is earlier."""
+    if not len(stamps_ns):
+        return stamps_ns
+    latest = np.maximum.accumulate(stamps_ns)
+    sign = np.ones(len(stamps_ns), np.int64)
+    sign[1:] = np.sign(stamps_ns[1:] - latest[:-1])
+    return sign
+
+
+def _matrix(raw: RawFoot, rows: Ints, stamps_ns: Ints) -> Floats:
+    matrix = np.full((len(rows), SAMPLE_WIDTH), np.nan)
+    matrix[:, 0] = stamps_ns - stamps_ns[0]
+    matrix[:, 1:4] = raw.force[rows]
+    matrix[:, 4:7] = raw.rate[rows]
+    if raw.field is not None:
+        with np.errstate(invalid="ignore"):
+            whole = (np.abs(raw.field[rows]) < _MOST).all(axis=1)
+        matrix[whole, 7:10] = raw.field[rows[whole]]
+    return matrix

@@ -1,0 +1,173 @@
+"""Heart: a file's bytes into a recording, whatever its format: found by content, cleaned, checked, turned."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from app.formats import gaitmap, microstrain, mounting, plain, pyshoe, xio
+from app.formats.clean import clean
+from app.formats.mounting import Axes
+from app.formats.options import Options
+from app.formats.raw import Parsed, RawFoot, even_stamps
+from app.formats.rest import Rest, check_units, find_rest
+from app.formats.saturation import RANGES, Range, saturation
+from app.formats.table import read_head, to_text
+from app.motion import InputError, Recording, Samples
+
+EXPECTED = "expected plain CSV, x-io, MicroStrain or gaitmap CSV, or a PyShoe MATLAB file"
+
+_NO_READINGS = ("", "t", "time", "timestamp", "index", "sample", "packet", "foot", "sensor")
+_FOREIGN = {
+    b"PK\x03\x04": "an Excel workbook or zip archive",
+    b"\x89HDF": "an HDF5 file",
+    b"\x1f\x8b": "a gzip archive",
+    b"%PDF": "a PDF",
+}
+
+
+def read(name: str, data: bytes, options: Options | None = None) -> Recording:
+    """The recording in ``data``. ``name`` is for messages only.
+
+    Raises ``InputError``, one line, when it is none, or when its units contradict the foot at rest.
+    """
+    told = options or Options()
+    parsed = _pick(name, _timed(_parse(name, data, told.rate_hz), told.rate_hz), told.foot)
+    cleaned = [_clean(name, foot) for foot in parsed.feet]
+    rests = [find_rest(samples) for samples in cleaned]
+    for samples, rest in zip(cleaned, rests, strict=True):
+        check_units(name, samples, rest, parsed.force_unit)
+    axes = [_axes(parsed, told, rest) for rest in rests]
+    full_scale = RANGES[told.device or parsed.device or "csv"]
+    sensors = [_turned(samples, a, full_scale) for samples, a in zip(cleaned, axes, strict=True)]
+    sentences = [_mounting_sentences(*foot, parsed, told) for foot in zip(sensors, rests, axes, strict=True)]
+    return Recording(
+        name=name,
+        format=parsed.format,
+        sensors=tuple(_with_unread(sensors, parsed)),
+        assumed=(*parsed.assumed, *dict.fromkeys(sentence for foot in sentences for sentence in foot)),
+        spec=parsed.spec,
+        dropped_rows=_dropped_rows(sensors, parsed),
+    )
+
+
+def _parse(name: str, data: bytes, rate_hz: float | None) -> Parsed:
+    """The parser's view of the file that the first bytes or the header call for."""
+    if not data.strip():
+        raise InputError(f"{name}: an empty file, {EXPECTED}")
+    for magic, what in _FOREIGN.items():
+        if data.startswith(magic):
+            raise InputError(f"{name}: {what}, {EXPECTED}")
+    if pyshoe.recognises(data):
+        return pyshoe.parse(name, data)
+    text = to_text(name, data)
+    head = read_head(text)
+    if plain.recognises(head):
+        return plain.parse(name, text, head)
+    if xio.recognises(head):
+        return xio.parse(name, text, head, rate_hz)
+    if gaitmap.header_row(head) is not None:
+        return gaitmap.parse(name, text, head, rate_hz)
+    if microstrain.header_row(head) is not None:
+        return microstrain.parse(name, text, head, rate_hz)
+    raise InputError(f"{name}: {_unknown(head.rows)}")
+
+
+def _unknown(rows: Sequence[tuple[str, ...]]) -> str:
+    first = ",".join(rows[0])[:50] if rows else ""
+    if len(rows) < 2 or len(rows[0]) < 4 or not _is_data(rows[1], len(rows[0])):
+        return f"begins with {first!r}, {EXPECTED}"
+    if all(_is_number(cell) for cell in rows[0]):
+        return f"begins with numbers ({first}), expected a header with units such as {plain.HEADER}"
+    column = next((cell for cell in rows[0] if cell.lower() not in _NO_READINGS), rows[0][1])
+    return f"column {column!r} has no unit, expected a header with units such as {plain.HEADER}"
+
+
+def _is_data(cells: tuple[str, ...], width: int) -> bool:
+    return len(cells) == width and all(_is_number(cell) for cell in cells[1:] if cell)
+
+
+def _is_number(cell: str) -> bool:
+    try:
+        float(cell)
+    except ValueError:
+        return False
+    return True
+
+
+def _timed(parsed: Parsed, rate_hz: float | None) -> Parsed:
+    """With a rate told, rows of a file with times are spread evenly instead."""
+    if rate_hz is None:
+        return parsed
+    said = f"{rate_hz:g} Hz as told, " + ("not the file's own times" if parsed.timed else "the file has no times")
+    assumed = (*parsed.assumed, said)
+    feet = tuple(_spread(foot, rate_hz) for foot in parsed.feet) if parsed.timed else parsed.feet
+    return replace(parsed, feet=feet, assumed=assumed)
+
+
+def _spread(foot: RawFoot, rate_hz: float) -> RawFoot:
+    return replace(foot, stamps_ns=even_stamps(np.arange(len(foot.stamps_ns)), rate_hz))
+
+
+def _pick(name: str, parsed: Parsed, foot: str | None) -> Parsed:
+    """The foot asked for, out of two, or the name of a single nameless one."""
+    if foot is None:
+        return parsed
+    by_name = {raw.sensor: raw for raw in parsed.feet}
+    chosen = by_name.get(foot)
+    if chosen is None and list(by_name) == ["foot"]:
+        chosen = replace(by_name["foot"], sensor=foot)
+    if chosen is None:
+        raise InputError(f"{name}: foot={foot}, but it holds {' and '.join(by_name)}")
+    return replace(parsed, feet=(chosen,))
+
+
+def _clean(name: str, foot: RawFoot) -> Samples:
+    try:
+        return clean(foot)
+    except InputError as error:
+        raise InputError(f"{name}: {error}") from None
+
+
+def _turned(samples: Samples, axes: Axes, full_scale: Range) -> Samples:
+    """The samples in the shoe's axes, with those that touch the sensor's range flagged."""
+    matrix = samples.matrix.copy()
+    for first in (1, 4, 7):
+        matrix[:, first : first + 3] = mounting.turn(matrix[:, first : first + 3], axes)
+    return replace(samples, matrix=matrix, saturation=saturation(matrix, full_scale))
+
+
+def _with_unread(sensors: list[Samples], parsed: Parsed) -> list[Samples]:
+    """Rows that no foot got are counted with the first."""
+    first = replace(sensors[0], dropped={**sensors[0].dropped, **parsed.unread})
+    return [first, *sensors[1:]]
+
+
+def _dropped_rows(sensors: list[Samples], parsed: Parsed) -> int:
+    per_foot = [sum(samples.dropped.values()) for samples in sensors]
+    return sum(parsed.unread.values()) + (max(per_foot) if parsed.wide else sum(per_foot))
+
+
+def _axes(parsed: Parsed, told: Options, rest: Rest) -> Axes:
+    return told.axes or (mounting.AS_GIVEN if parsed.mounted else mounting.snap(rest.force))
+
+
+def _mounting_sentences(
+    samples: Samples, rest: Rest, axes: Axes, parsed: Parsed, told: Options
+) -> list[str]:
+    """What was taken for granted about one foot's axes, in words."""
+    sentences = []
+    if told.axes:
+        sentences.append(f"{mounting.describe(axes)}, as told")
+    elif not parsed.mounted:
+        whose = f"{samples.sensor}: " if len(parsed.feet) > 1 else ""
+        sentences.append(f"{whose}{mounting.describe(axes)} assumed from gravity at rest, sensor x forward")
+    force = mounting.turn(rest.force[None], axes)[0]
+    if mounting.snap(force)[2] != mounting.AS_GIVEN[2]:
+        reading = ", ".join(f"{value:.1f}" for value in force)
+        sentences.append(f"{samples.sensor} rests at ({reading}) m/s²: z is not down, expected (0, 0, −9.8)")
+    if not rest.still:
+        sentences.append(f"{samples.sensor} never rests: units and mounting could not be checked")
+    return sentences
