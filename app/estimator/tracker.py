@@ -1,0 +1,141 @@
+"""Heart: one sensor's walk: state, rows and strides; the same compiled run for one sample or a million."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from app.blocks import BLOCK, Blocks
+from app.compiled import kernel
+from app.estimator import state as s
+from app.estimator.corrections import EVENT_WIDTH, Event, correct
+from app.estimator.papers import Reading, step
+from app.estimator.state import Record, State
+from app.estimator.strapdown import bias_of_swing
+from app.estimator.strides import Contact, contact_at, lift_above_line, stride_between
+from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples, Stride
+from app.settings import Settings
+
+#: Events a run may report before it pauses for them to be applied.
+EVENTS = 64
+
+
+@kernel
+def run(state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats) -> tuple[int, int]:
+    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 12].
+
+    Stops early when ``events`` [m, 15] is full. Returns the next sample's place and the events' count.
+    """
+    now = state[0]
+    count = 0
+    for i in range(begin, end):
+        if count == events.shape[0]:
+            return i, count
+        reading = Reading(
+            samples[i, 0],
+            (samples[i, 1], samples[i, 2], samples[i, 3]),
+            (samples[i, 4], samples[i, 5], samples[i, 6]),
+            (samples[i, 7], samples[i, 8], samples[i, 9]),
+        )
+        happened = step(now, reading)
+        # A swing's rows are what is known now; its zero-velocity update corrects them.
+        rows[i, 0], rows[i, 1], rows[i, 2] = now.px + now.sx, now.py + now.sy, now.pz + now.sz
+        rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz
+        rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = now.q0, now.q1, now.q2, now.q3
+        rows[i, 10], rows[i, 11] = now.phase, now.statistic
+        if happened & s.REPORTED:
+            write_event(events[count], now, happened)
+            count += 1
+    return end, count
+
+
+@kernel
+def write_event(event: Floats, now: State, happened: int) -> None:
+    """Which rows change, and by what, in the columns of ``Event``."""
+    event[0], event[1], event[2], event[3] = happened, now.lift_row, now.end_row, now.row - 1.0
+    event[4], event[5] = now.lift_ns, now.end_swing_s
+    event[12], event[13], event[14] = now.px, now.py, now.pz
+    if happened & s.STRIDE:
+        end_velocity = (now.end_vx, now.end_vy, now.end_vz)
+        event[6], event[7], event[8] = bias_of_swing(end_velocity, now.end_swing_s)
+        event[9], event[10], event[11] = now.from_x, now.from_y, now.from_z
+
+
+class Tracker:
+    """The estimate of one sensor under one settings record.
+
+    ``rows`` has one row per sample; a later sample may correct rows behind it. ``changed_from`` is
+    the first row that changed since the caller last set it to ``rows.end``.
+    """
+
+    def __init__(self, settings: Settings, start: int = 0, state: Record | None = None) -> None:
+        """Begin at row ``start`` (a multiple of ``BLOCK``), from another tracker's ``state`` there."""
+        self.settings = settings
+        self.state = s.new_state(settings) if state is None else state.copy()
+        s.set_parameters(self.state, settings)
+        self.rows = Blocks(ROW_WIDTH, start)
+        self.strides: list[Stride] = []
+        self.distance_m = 0.0
+        self.segments: list[int] = []  # rows where a segment begins, but for the first
+        self.changed_from = start
+        self.checkpoints: dict[int, Record] = {}  # state before a block's first row
+        self._contact: Contact | None = None  # the last footprint of this segment
+        self._events = np.zeros((EVENTS, EVENT_WIDTH))
+
+    def advance(self, samples: Blocks) -> None:
+        """Take every sample of the table that was not yet taken."""
+        while self.rows.end < samples.end:
+            block, place = samples.block(self.rows.end)
+            if place == 0:
+                self.checkpoints[self.rows.end] = self.state.copy()
+            self._advance_in(samples, block, place, min(samples.end - self.rows.end, BLOCK - place))
+
+    def _advance_in(self, samples: Blocks, block: Floats, place: int, count: int) -> None:
+        base = self.rows.end - place
+        self.rows.grow(count)
+        rows, _ = self.rows.block(base + place)
+        end = place + count
+        while place < end:
+            place, events = run(self.state, block, rows, place, end, self._events)
+            for k in range(events):
+                self._happen(samples, self._events[k])
+
+    def _happen(self, samples: Blocks, event: Floats) -> None:
+        first, last = int(event[Event.LIFT_ROW]) + 1, int(event[Event.ROW]) + 1
+        kind = int(event[Event.HAPPENED])
+        if kind & (s.SWING_FOUND | s.FLICKER | s.STRIDE):
+            for rows, number in self.rows.pieces(first, last):
+                piece, place = samples.block(number)
+                correct(rows, number, piece[place : place + len(rows)], event)
+            self.changed_from = min(self.changed_from, first)
+        if kind & s.STRIDE:
+            self._add_stride(event)
+        if kind & s.SEGMENT:
+            self.segments.append(last - 1)
+            self._contact = None
+
+    def _add_stride(self, event: Floats) -> None:
+        lift, contact = max(int(event[Event.LIFT_ROW]), self.rows.start), int(event[Event.CONTACT_ROW])
+        lifts = [lift_above_line(rows, event) for rows, _ in self.rows.pieces(lift, contact + 1)]
+        before = self._contact or contact_at(self._row(lift), event[Event.LIFT_NS] * 1e-9)
+        self._contact = contact_at(self._row(contact), event[Event.LIFT_NS] * 1e-9 + event[Event.SWING_S])
+        stride = stride_between(before, self._contact, event, len(self.strides) + 1, max(lifts))
+        self.strides.append(stride)
+        self.distance_m += stride.length_m
+
+    def _row(self, number: int) -> Floats:
+        block, place = self.rows.block(number)
+        return block[place]
+
+
+def store(samples: Samples) -> Blocks:
+    """The samples of a recording as the table a tracker reads."""
+    table = Blocks(SAMPLE_WIDTH)
+    table.extend(samples.matrix)
+    return table
+
+
+def track(samples: Samples, settings: Settings) -> Tracker:
+    """A whole recording of one sensor: the same steps as live, in one go."""
+    tracker = Tracker(settings)
+    tracker.advance(store(samples))
+    return tracker
