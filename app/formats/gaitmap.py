@@ -59,7 +59,7 @@ def _places(name: str, header: tuple[str, ...], sensors: tuple[str, ...] | None)
         if axis in (*_FORCE, *_RATE):
             foot = _foot_of(sensors[column] if sensors and column < len(sensors) else "")
             if axis in found.setdefault(foot, {}):
-                raise InputError(f"{name}: two columns {axis!r} of {foot}, expected left_sensor and right_sensor")
+                raise InputError(f"{name}: two columns {axis!r} of {foot}, expected one for each foot")
             found[foot][axis] = column
     for foot, axes in found.items():
         for axis in (*_FORCE, *_RATE):

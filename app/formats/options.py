@@ -28,7 +28,7 @@ class Options:
 
 
 def parse_options(texts: Mapping[str, str]) -> Options:
-    """Options as typed: ``rate``, ``axes``, ``foot``, ``device``; ``InputError`` on any other or a bad one."""
+    """Options as typed: ``rate``, ``axes``, ``foot``, ``device``; ``InputError`` on any other."""
     for key in texts:
         if key not in KEYS:
             raise InputError(f"option {key!r}: expected one of {', '.join(KEYS)}")

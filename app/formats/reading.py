@@ -101,8 +101,8 @@ def _timed(parsed: Parsed, rate_hz: float | None) -> Parsed:
     """With a rate told, rows of a file with times are spread evenly instead."""
     if rate_hz is None:
         return parsed
-    said = f"{rate_hz:g} Hz as told, " + ("not the file's own times" if parsed.timed else "the file has no times")
-    assumed = (*parsed.assumed, said)
+    why = "not the file's own times" if parsed.timed else "the file has no times"
+    assumed = (*parsed.assumed, f"{rate_hz:g} Hz as told, {why}")
     feet = tuple(_spread(foot, rate_hz) for foot in parsed.feet) if parsed.timed else parsed.feet
     return replace(parsed, feet=feet, assumed=assumed)
 
@@ -154,9 +154,7 @@ def _axes(parsed: Parsed, told: Options, rest: Rest) -> Axes:
     return told.axes or (mounting.AS_GIVEN if parsed.mounted else mounting.snap(rest.force))
 
 
-def _mounting_sentences(
-    samples: Samples, rest: Rest, axes: Axes, parsed: Parsed, told: Options
-) -> list[str]:
+def _mounting_sentences(samples: Samples, rest: Rest, axes: Axes, parsed: Parsed, told: Options) -> list[str]:
     """What was taken for granted about one foot's axes, in words."""
     sentences = []
     if told.axes:

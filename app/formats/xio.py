@@ -72,9 +72,7 @@ def _find(header: tuple[str, ...]) -> Found:
     return found
 
 
-def _triple(
-    name: str, found: Found, quantity: str, units: dict[str, float]
-) -> tuple[dict[int, float], str]:
+def _triple(name: str, found: Found, quantity: str, units: dict[str, float]) -> tuple[dict[int, float], str]:
     """Column → factor for x, y, z, in that order, and the unit they are in."""
     columns: dict[int, float] = {}
     unit_of_x = ""

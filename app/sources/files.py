@@ -1,0 +1,40 @@
+"""Edge: recordings on disk: the bytes of a file, and every way in which there are none."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+from app.formats.options import parse_options
+from app.formats.reading import read
+from app.motion import InputError, Recording
+
+MOST_BYTES = 2_000_000_000
+
+
+def load(path: str | Path, options: Mapping[str, str] | None = None) -> Recording:
+    """The recording at ``path``; ``options`` as typed (rate, axes, foot, device).
+
+    Raises ``InputError``, one line, if there is no such file or it is no recording.
+    """
+    told = parse_options(options or {})
+    file = Path(path).expanduser()
+    return read(file.name, _bytes(file), told)
+
+
+def _bytes(file: Path) -> bytes:
+    try:
+        if file.is_dir():
+            raise InputError(f"{file}: a folder, expected a recording")
+        if not file.is_file():
+            what = "not a regular file" if file.exists() else "no such file"
+            raise InputError(f"{file}: {what}, expected a recording")
+        size = file.stat().st_size
+        if size > MOST_BYTES:
+            raise InputError(f"{file}: {size / 1e9:.1f} GB, expected at most {MOST_BYTES / 1e9:g} GB")
+        return file.read_bytes()
+    except (OSError, ValueError) as error:  # ValueError: a NUL in the name
+        if isinstance(error, InputError):
+            raise
+        reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
+        raise InputError(f"{file}: cannot be read ({reason}), expected a recording") from None

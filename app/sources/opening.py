@@ -1,0 +1,69 @@
+"""Edge: from a SPEC to a source: a file or a simulator, and the truth where one is known."""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+
+from app.motion import InputError, Recording, Truth
+from app.simulate.walk import make_walk
+from app.sources.files import load
+from app.sources.replay import Replay
+from app.sources.spec import Spec, parse_spec
+
+_log = logging.getLogger(__name__)
+
+_SAME = 1e-6  # m/s², rad/s: another machine's sines differ in the last digits
+
+
+def open_source(spec_text: str, *, finish: bool = False) -> Replay:
+    """The source a SPEC names, at the pace it asks for; ``InputError`` if there is none.
+
+    ``finish``: the source ends after the last sample instead of waiting for a seek.
+    """
+    spec = parse_spec(spec_text)
+    recording, truth = open_recording(spec)
+    return Replay(recording, speed=spec.speed, loop=spec.loop, finish=finish, truth=truth)
+
+
+def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:
+    """All samples of a file or of a simulated walk, and the simulator's truth if it made them."""
+    if spec.kind == "sim":
+        return _simulated(spec)
+    recording = load(spec.target, spec.options)
+    return recording, _truth_of(recording)
+
+
+def _simulated(spec: Spec) -> tuple[Recording, Truth]:
+    if spec.target != "walk":
+        raise InputError(f"sim:{spec.target}: this version simulates only sim:walk")
+    walk = make_walk(spec.options)
+    return walk.recording, walk.truth
+
+
+def _truth_of(recording: Recording) -> Truth | None:
+    """The truth behind a simulator's recording, if the rows are still those its SPEC makes."""
+    if recording.spec is None:
+        return None
+    try:
+        spec = parse_spec(recording.spec)
+        made, truth = _simulated(spec) if spec.kind == "sim" else (None, None)
+    except InputError as error:
+        _log.warning("%s: no truth: its SPEC is of another version (%s)", recording.name, error)
+        return None
+    if made is None or not _same(recording, made):
+        _log.warning("%s: no truth: its rows are not those of %s", recording.name, recording.spec)
+        return None
+    return truth
+
+
+def _same(recording: Recording, made: Recording) -> bool:
+    """Whether every sensor of the recording has the samples the simulator made for it."""
+    by_name = {samples.sensor: samples for samples in made.sensors}
+    return all(
+        samples.sensor in by_name
+        and by_name[samples.sensor].matrix.shape == samples.matrix.shape
+        and np.allclose(samples.matrix[:, :7], by_name[samples.sensor].matrix[:, :7], rtol=0.0, atol=_SAME)
+        for samples in recording.sensors
+    )

@@ -1,0 +1,255 @@
+"""Edge: a recording played at its own pace, or faster: pause, step, seek, loop.
+
+The playhead runs on the host's clock. Samples it has passed are released in bursts, at least
+5 ms apart, and in the order of their stamps. A jump back starts the walk again from the first
+sample, as fast as the reader takes them, because a walk is a fold over all its samples.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import math
+import time
+from collections.abc import AsyncIterator
+from typing import Protocol
+
+from app.motion import (
+    InputError,
+    Loop,
+    Pause,
+    Recording,
+    ReplayCommand,
+    RestartHere,
+    Sample,
+    Seek,
+    SourceInfo,
+    Speed,
+    Step,
+    Truth,
+)
+from app.sources.spec import FASTEST, SLOWEST
+from app.sources.timeline import Timeline
+
+_BURST_NS = 5_000_000  # between wake-ups, and between chances for the rest of the loop
+_CHUNK = 256  # samples made at once
+
+
+class Clock(Protocol):
+    """What a replay needs of time; a test brings its own."""
+
+    def now_ns(self) -> int:
+        """Monotonic nanoseconds."""
+
+    async def wait(self, event: asyncio.Event, seconds: float | None) -> None:
+        """Return when the event is set, or after ``seconds`` if given."""
+
+
+class HostClock:
+    """The machine's monotonic clock."""
+
+    def now_ns(self) -> int:
+        """Monotonic nanoseconds."""
+        return time.monotonic_ns()
+
+    async def wait(self, event: asyncio.Event, seconds: float | None) -> None:
+        """Return when the event is set; after ``seconds`` it sets itself."""
+        timer = None if seconds is None else asyncio.get_running_loop().call_later(seconds, event.set)
+        try:
+            await event.wait()
+        finally:
+            if timer:
+                timer.cancel()
+
+
+class Replay:
+    """A source over a recording: iterate it once, steer it by ``control``.
+
+    It yields samples, and ``RestartHere`` before it begins anew. At the end it waits for a seek or
+    a loop, unless ``finish`` is set. ``speed`` 0 is as fast as the reader takes them.
+    """
+
+    def __init__(
+        self,
+        recording: Recording,
+        *,
+        speed: float = 1.0,
+        loop: bool = False,
+        finish: bool = False,
+        truth: Truth | None = None,
+        clock: Clock | None = None,
+    ) -> None:
+        self.recording = recording
+        self.info = source_info(recording, truth)
+        self.speed = _checked_speed(speed)
+        self.loop = loop
+        self.paused = False
+        self.ended = False
+        self._finish = finish
+        self._clock = clock or HostClock()
+        self._timeline = Timeline(recording)
+        self._next = 0  # the first sample not yet released
+        self._restart = False
+        self._jump: tuple[int, int] | None = None  # release up to this sample at once; the playhead then
+        self._anchor = (self._clock.now_ns(), 0)  # host time, playhead
+        self._news = asyncio.Event()
+
+    @property
+    def duration_s(self) -> float:
+        """Seconds from the first sample to the last."""
+        return self._timeline.duration_ns * 1e-9
+
+    @property
+    def position_s(self) -> float:
+        """Where the playhead is, in seconds from the first sample."""
+        return max(self._playhead_ns(), 0) * 1e-9
+
+    def control(self, command: ReplayCommand) -> None:
+        """Take a command, at once; to be called on the loop that reads. Bad values raise ``InputError``."""
+        match command:
+            case Pause(on):
+                self._move_anchor(self._playhead_ns())
+                self.paused = on
+            case Speed(factor):
+                _checked_speed(factor)
+                self._move_anchor(self._playhead_ns())
+                self.speed = factor
+            case Seek(t_s):
+                self._seek(t_s)
+            case Step(samples):
+                self._step(samples)
+            case Loop(on):
+                self.loop = on
+        self._news.set()
+
+    def __aiter__(self) -> AsyncIterator[Sample | RestartHere]:
+        return self._play()
+
+    async def _play(self) -> AsyncIterator[Sample | RestartHere]:
+        self._move_anchor(self._playhead_ns())
+        breath_ns = self._clock.now_ns()
+        while True:
+            self._news.clear()
+            if self._restart:
+                self._begin_anew()
+                yield RestartHere()
+            now_ns = self._clock.now_ns()
+            last = min(self._due(), self._next + _CHUNK)
+            for sample in self._timeline.cut(self._next, last, now_ns) if last > self._next else ():
+                self._next += 1
+                yield sample
+                if self._clock.now_ns() - breath_ns > _BURST_NS:
+                    await asyncio.sleep(0)
+                    breath_ns = self._clock.now_ns()
+                if self._news.is_set():
+                    break
+            self._land()
+            if self._news.is_set() or self._next < self._due():
+                continue
+            if self._at_end() and self._finish and not self.paused and not self.loop:
+                self.ended = True
+                return
+            await self._rest()
+            breath_ns = self._clock.now_ns()
+
+    # --- the playhead ---
+
+    def _playhead_ns(self) -> int:
+        if self._jump:
+            return self._jump[1]
+        host_ns, position_ns = self._anchor
+        if not self.paused and self.speed > 0.0:
+            position_ns += int((self._clock.now_ns() - host_ns) * self.speed)
+        elif not self.paused and self._next:
+            position_ns = max(position_ns, self._timeline.elapsed_ns(self._next - 1))
+        return min(position_ns, self._timeline.duration_ns)
+
+    def _move_anchor(self, position_ns: int) -> None:
+        self._anchor = (self._clock.now_ns(), position_ns)
+
+    def _due(self) -> int:
+        """How many samples should be out by now."""
+        if self._jump:
+            return self._jump[0]
+        if self.paused:
+            return self._next
+        if self.speed == 0.0:
+            return len(self._timeline)
+        return max(self._timeline.due(self._playhead_ns()), self._next)
+
+    # --- jumps ---
+
+    def _seek(self, t_s: float) -> None:
+        if not math.isfinite(t_s):
+            raise InputError(f"seek to {t_s}: expected 0 to {self.duration_s:.1f} s")
+        position_ns = round(min(max(t_s, 0.0), self.duration_s) * 1e9)
+        self._jump_to(self._timeline.due(position_ns), position_ns)
+
+    def _step(self, samples: int) -> None:
+        """On by a few samples, from where a jump under way will land."""
+        if self.paused and samples > 0:
+            start = self._jump[0] if self._jump else self._next
+            index = min(start + samples, len(self._timeline))
+            self._jump_to(index, self._timeline.elapsed_ns(index - 1))
+
+    def _jump_to(self, index: int, position_ns: int) -> None:
+        self._restart = self._restart or index < self._next
+        self._jump = (index, position_ns)
+
+    def _land(self) -> None:
+        """At the end of a jump the playhead goes on from where the jump led."""
+        if self._jump and self._next >= self._jump[0] and not self._restart:
+            position_ns = self._jump[1]
+            self._jump = None
+            self._move_anchor(position_ns)
+
+    def _begin_anew(self) -> None:
+        self._restart = False
+        self.ended = False
+        self._next = 0
+
+    # --- the end, and waiting ---
+
+    def _at_end(self) -> bool:
+        return self._next >= len(self._timeline)
+
+    async def _rest(self) -> None:
+        """Wait for the next sample's time or for a command; at the end, begin anew or wait for one."""
+        if self._at_end() and self.loop and not self.paused:
+            self._restart = True
+            self._move_anchor(-self._timeline.interval_ns)
+            await asyncio.sleep(0)
+        elif self._at_end() or self.paused:
+            self.ended = self._at_end()
+            await self._clock.wait(self._news, None)
+        else:
+            await self._clock.wait(self._news, self._seconds_to_next())
+
+    def _seconds_to_next(self) -> float:
+        ahead_ns = self._timeline.elapsed_ns(self._next) - self._playhead_ns()
+        return max(ahead_ns / self.speed, _BURST_NS) * 1e-9
+
+
+def source_info(recording: Recording, truth: Truth | None = None) -> SourceInfo:
+    """What a recording says of itself; rows dropped are summed over its sensors by reason."""
+    dropped: dict[str, int] = {}
+    for samples in recording.sensors:
+        for reason, count in samples.dropped.items():
+            dropped[reason] = dropped.get(reason, 0) + count
+    return SourceInfo(
+        name=recording.name,
+        format=recording.format,
+        sensors={samples.sensor: samples.role for samples in recording.sensors},
+        rate_hz=max(samples.rate_hz for samples in recording.sensors),
+        assumed=recording.assumed,
+        dropped=dropped,
+        duration_s=recording.duration_s,
+        truth=truth,
+    )
+
+
+def _checked_speed(factor: float) -> float:
+    if factor != 0.0 and not SLOWEST <= factor <= FASTEST:
+        raise InputError(
+            f"speed {factor:g}: expected {SLOWEST:g} to {FASTEST:g}, or 0 for as fast as possible"
+        )
+    return factor

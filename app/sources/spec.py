@@ -1,0 +1,105 @@
+"""Edge: SPEC, where samples come from: ``PATH``, ``replay:PATH?speed=2``, ``sim:walk?path=oval``."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from urllib.parse import unquote
+
+from app.formats.options import KEYS
+from app.motion import InputError
+
+KINDS = ("replay", "sim", "serial", "ws", "udp")
+SLOWEST, FASTEST = 0.1, 8.0
+
+_PACE = ("speed", "loop")
+_LATER = ("serial", "ws", "udp")
+_TRUE = {
+    "1": True,
+    "true": True,
+    "on": True,
+    "yes": True,
+    "0": False,
+    "false": False,
+    "off": False,
+    "no": False,
+}
+
+
+@dataclass(frozen=True)
+class Spec:
+    """A parsed SPEC: ``kind`` replay or sim, ``target`` the path or the simulator's name.
+
+    ``options`` are what the file does not say, or the simulator's own.
+    """
+
+    kind: str
+    target: str
+    options: Mapping[str, str] = field(default_factory=dict)
+    speed: float = 1.0
+    loop: bool = False
+
+
+def parse_spec(text: str) -> Spec:
+    """The SPEC as typed; ``InputError`` names what is wrong: form, option or number."""
+    kind, rest = _kind(text)
+    if kind in _LATER:
+        raise InputError(f"{text}: {kind}: sources are not in this version, expected a recording or sim:walk")
+    target, _, query = rest.partition("?")
+    if not target:
+        raise InputError(
+            f"{text!r}: no {'path' if kind == 'replay' else 'simulator'}, expected e.g. sim:walk"
+        )
+    options = _options(text, query)
+    pace = {key: options.pop(key) for key in _PACE if key in options}
+    if kind == "replay":
+        _check_keys(text, options)
+    return Spec(
+        kind,
+        unquote(target) if kind == "sim" else target,
+        options,
+        speed=parse_speed(pace.get("speed", "1")),
+        loop=_loop(pace.get("loop", "0")),
+    )
+
+
+def parse_speed(text: str) -> float:
+    """A pace as typed: 0.1 to 8 times the recorded one, or 0 for as fast as possible."""
+    try:
+        speed = float(text)
+    except ValueError:
+        speed = math.nan
+    if speed != 0.0 and not SLOWEST <= speed <= FASTEST:
+        raise InputError(f"speed={text}: expected {SLOWEST:g} to {FASTEST:g}, or 0 for as fast as possible")
+    return speed
+
+
+def _kind(text: str) -> tuple[str, str]:
+    """The kind before the first colon, if it is one; anything else is a path."""
+    kind, colon, rest = text.partition(":")
+    return (kind, rest) if colon and kind in KINDS else ("replay", text)
+
+
+def _options(text: str, query: str) -> dict[str, str]:
+    options: dict[str, str] = {}
+    for part in query.split("&") if query else ():
+        key, equals, value = part.partition("=")
+        if not key or not equals:
+            raise InputError(f"{text}: option {part!r}, expected key=value")
+        if key in options:
+            raise InputError(f"{text}: option {key!r} is given twice, expected once")
+        options[key] = unquote(value)
+    return options
+
+
+def _check_keys(text: str, options: Mapping[str, str]) -> None:
+    for key in options:
+        if key not in KEYS:
+            raise InputError(f"{text}: unknown option {key!r}, expected one of {', '.join((*_PACE, *KEYS))}")
+
+
+def _loop(text: str) -> bool:
+    if text.lower() not in _TRUE:
+        raise InputError(f"loop={text}: expected 1 or 0")
+    return _TRUE[text.lower()]

@@ -1,0 +1,77 @@
+"""Edge: a recording's samples in the order of time, made into ``Sample`` records piece by piece."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+
+from app.motion import Recording, Sample, Samples
+
+
+class Timeline:
+    """All sensors of a recording merged by their stamps; the order among equal stamps is the recording's."""
+
+    def __init__(self, recording: Recording) -> None:
+        self._sensors = recording.sensors
+        stamps = [samples.device_ns + samples.matrix[:, 0].astype(np.int64) for samples in recording.sensors]
+        merged = np.concatenate(stamps)
+        order = np.argsort(merged, kind="stable")
+        self._elapsed_ns = merged[order] - merged[order[0]]
+        self._which = np.repeat(np.arange(len(stamps)), [len(s) for s in stamps])[order]
+        self._row = np.concatenate([np.arange(len(s)) for s in stamps])[order]
+
+    def __len__(self) -> int:
+        return len(self._elapsed_ns)
+
+    @property
+    def duration_ns(self) -> int:
+        """From the first stamp to the last."""
+        return int(self._elapsed_ns[-1])
+
+    @property
+    def interval_ns(self) -> int:
+        """A usual step from one sample of a sensor to its next; a tenth of a second where there is none."""
+        rate_hz = max(samples.rate_hz for samples in self._sensors)
+        return int(1e9 / rate_hz) if rate_hz > 0.0 else 100_000_000
+
+    def elapsed_ns(self, index: int) -> int:
+        """When sample ``index`` was taken, from the first."""
+        return int(self._elapsed_ns[index])
+
+    def due(self, elapsed_ns: int) -> int:
+        """How many samples had been taken by then."""
+        return int(np.searchsorted(self._elapsed_ns, elapsed_ns, side="right"))
+
+    def cut(self, first: int, last: int, host_ns: int) -> list[Sample]:
+        """Samples ``first`` to ``last`` (exclusive), all said to arrive at ``host_ns``."""
+        which, rows = self._which[first:last], self._row[first:last]
+        if len(self._sensors) == 1:
+            return list(_samples(self._sensors[0], first, last, host_ns))
+        streams = []
+        for index, samples in enumerate(self._sensors):
+            own = rows[which == index]
+            streams.append(
+                _samples(samples, int(own[0]), int(own[-1]) + 1, host_ns) if len(own) else iter(())
+            )
+        return [next(streams[index]) for index in which.tolist()]
+
+
+def _samples(samples: Samples, first: int, last: int, host_ns: int) -> Iterator[Sample]:
+    """Rows ``first`` to ``last`` of one sensor."""
+    sensor, start_ns = samples.sensor, samples.device_ns
+    rows = samples.matrix[first:last].tolist()
+    flags = samples.saturation[first:last].tolist()
+    for seq, ((elapsed_ns, fx, fy, fz, wx, wy, wz, mx, my, mz), saturation) in enumerate(
+        zip(rows, flags, strict=True), start=first
+    ):
+        yield Sample(
+            sensor,
+            seq,
+            start_ns + int(elapsed_ns),
+            host_ns,
+            (fx, fy, fz),
+            (wx, wy, wz),
+            (mx, my, mz) if mx == mx else None,  # NaN: no magnetometer
+            saturation,
+        )
