@@ -11,10 +11,10 @@ run: setup
 setup:
 	@tools/setup.sh
 
-chromium:
+chromium: setup
 	@tools/chromium.sh
 
-test: setup chromium
+test: chromium
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy

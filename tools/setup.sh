@@ -21,7 +21,7 @@ choose_python() {
 # A .venv made elsewhere and moved here, or left by a Python since removed, is of no use.
 usable() {
     .venv/bin/python -c "$fits" 2>/dev/null && grep -qF "$(pwd)/.venv/bin/" .venv/bin/pip &&
-        { [ -z "${PYTHON:-}" ] || [ "$("$PYTHON" --version)" = "$(.venv/bin/python --version)" ]; }
+        { [ -z "${PYTHON:-}" ] || [ "$("$PYTHON" --version 2>/dev/null)" = "$(.venv/bin/python --version)" ]; }
 }
 
 pip() {
@@ -32,9 +32,11 @@ wanted=$(cat requirements.txt pyproject.toml | cksum)
 usable || rm -f .venv/.ready
 [ "$(cat .venv/.ready 2>/dev/null)" = "$wanted" ] && exit 0
 
-echo "setup: installing into .venv (about a minute, this once)"
-if ! usable; then
+if usable; then
+    echo "setup: bringing .venv up to date"
+else
     python=$(choose_python)
+    echo "setup: installing into .venv (about a minute, this once)"
     if ! said=$("$python" -m venv --clear .venv 2>&1); then
         echo "setup: $python cannot make .venv: expected venv with pip (Debian: apt-get install python3-venv):" \
             "$(echo "$said" | tail -n 1)" >&2
