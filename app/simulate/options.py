@@ -82,6 +82,9 @@ class WalkOptions:
     magnetometer_range_gauss: float | None = _option(
         None, "readings are clipped here", low=0.01, high=1_000.0
     )
+    decimals: int | None = _option(
+        None, "readings are rounded to so many, in m/s², rad/s and gauss", kind="integer", low=0, high=15
+    )
     lost_fraction: float = _option(0.0, "share of samples that never arrive", low=0.0, high=0.9)
     magnetometer: bool = _option(True, "on or off: whether there is one", kind="switch")
     iron_gauss_m3: float = _option(

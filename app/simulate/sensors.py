@@ -44,6 +44,7 @@ class SensorErrors:
     noise: tuple[float, float, float]
     bias: tuple[Vector, Vector, Vector]
     full_scale: tuple[float, float, float]
+    decimals: int | None  # of m/s², rad/s and gauss; None: not rounded
     lost_fraction: float
 
 
@@ -69,6 +70,7 @@ def errors_of(options: WalkOptions) -> SensorErrors:
         _or_else(noise, tuple(o.noise * usual for usual in TABLE_II_NOISE)),
         (force, rate, field),
         _or_else(ranges, (math.inf,) * 3),
+        o.decimals,
         o.lost_fraction,
     )
 
@@ -114,8 +116,16 @@ def read(sensor: str, elapsed_ns: Floats, ideal: Floats, errors: SensorErrors, s
     raw = ideal + np.ravel(errors.bias) + np.hstack(noise) * np.repeat(errors.noise, 3)
     kept = np.random.default_rng(loss).random(len(ideal)) >= errors.lost_fraction
     kept[:1] = True
-    matrix = np.column_stack([elapsed_ns, np.clip(raw, -full_scale, full_scale)])[kept]
+    readings = rounded(np.clip(raw, -full_scale, full_scale), errors.decimals)
+    matrix = np.column_stack([elapsed_ns, readings])[kept]
     return Samples(sensor, role_of(sensor), 0, matrix, saturation_bits(raw, full_scale)[kept])
+
+
+def rounded(readings: Floats, decimals: int | None) -> Floats:
+    """Readings [n, 9] with so many decimals in m/s², rad/s and gauss, which is µT / 100."""
+    if decimals is None:
+        return readings
+    return np.hstack([readings[:, :6].round(decimals), readings[:, 6:].round(decimals - 2)])
 
 
 def saturation_bits(raw: Floats, full_scale: Floats) -> NDArray[np.uint16]:

@@ -119,6 +119,13 @@ def test_lost_samples_leave_gaps_and_nothing_else_changes() -> None:
     assert set(np.diff(some.matrix[:, 0])) >= {10e6, 20e6, 30e6}
 
 
+def test_rounded_readings_lie_on_the_grid_and_near() -> None:
+    fine, coarse = samples(noise=1.0), samples(noise=1.0, decimals=3)
+    grid = np.array([1e-3] * 6 + [1e-1] * 3)  # 1 mG is 0.1 µT
+    np.testing.assert_allclose(coarse.matrix[:, 1:] / grid, np.rint(coarse.matrix[:, 1:] / grid), atol=1e-6)
+    assert np.abs((coarse.matrix - fine.matrix)[:, 1:] / grid).max() <= 0.5 + 1e-6
+
+
 def test_the_same_seed_gives_the_same_bytes() -> None:
     once, again, other = (
         samples(noise=1.0, lost_fraction=0.1, seed=seed).matrix.tobytes() for seed in (5, 5, 6)
