@@ -110,7 +110,9 @@ def share_of(gain: float, dt_s: float) -> float:
 
 
 @kernel
-def complementary(q_nb: Quaternion, turn: Quaternion, tilt: Quaternion, yaw: Quaternion, share: float) -> Quaternion:
+def complementary(
+    q_nb: Quaternion, turn: Quaternion, tilt: Quaternion, yaw: Quaternion, share: float
+) -> Quaternion:
     """q̇ = ½ q ⊗ ω + k (±q_s − q̂), (2) and (3.27), over one sample; then normalised.
 
     ``turn`` integrates the first term, ``share`` = 1 − e^(−k·dt) the second.

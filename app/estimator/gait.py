@@ -11,7 +11,12 @@ SWING = float(GaitPhase.SWING)
 
 @kernel
 def gait_phase(
-    phase: float, contrary_s: float, rate_radps: float, threshold_radps: float, min_duration_s: float, dt_s: float
+    phase: float,
+    contrary_s: float,
+    rate_radps: float,
+    threshold_radps: float,
+    min_duration_s: float,
+    dt_s: float,
 ) -> tuple[float, float]:
     """One step of the machine of Fig. 5: (phase, γ in seconds) → the same.
 

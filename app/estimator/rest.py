@@ -64,13 +64,25 @@ def add(state: State, reading: Reading) -> None:
     f, w, m = reading.force_b, reading.rate_b, reading.field_b
     state.rest_n += 1.0
     state.rest_norm += math.sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
-    state.rest_fx, state.rest_fy, state.rest_fz = state.rest_fx + f[0], state.rest_fy + f[1], state.rest_fz + f[2]
-    state.rest_wx, state.rest_wy, state.rest_wz = state.rest_wx + w[0], state.rest_wy + w[1], state.rest_wz + w[2]
+    state.rest_fx, state.rest_fy, state.rest_fz = (
+        state.rest_fx + f[0],
+        state.rest_fy + f[1],
+        state.rest_fz + f[2],
+    )
+    state.rest_wx, state.rest_wy, state.rest_wz = (
+        state.rest_wx + w[0],
+        state.rest_wy + w[1],
+        state.rest_wz + w[2],
+    )
     state.rest_wx2 += w[0] * w[0]
     state.rest_wy2 += w[1] * w[1]
     state.rest_wz2 += w[2] * w[2]
     if not math.isnan(m[0] + m[1] + m[2]):
-        state.rest_mx, state.rest_my, state.rest_mz = state.rest_mx + m[0], state.rest_my + m[1], state.rest_mz + m[2]
+        state.rest_mx, state.rest_my, state.rest_mz = (
+            state.rest_mx + m[0],
+            state.rest_my + m[1],
+            state.rest_mz + m[2],
+        )
 
 
 @kernel

@@ -10,7 +10,6 @@ from app.estimator.corrections import Event
 from app.motion import Floats, Stride, Vector
 from app.rotation import yaw_of
 
-
 _START, _END = int(Event.START), int(Event.END)
 
 

@@ -83,11 +83,13 @@ def sweep(
         sweep_run(state, navs, gains_stance, gains_swing, shares, piece)
         if not progress((row + len(piece) - samples.start) / max(1, len(samples))):
             raise InterruptedError("the sweep was given up")
-    closure_m = np.hypot(navs["px"] + navs["sx"], navs["py"] + navs["sy"])
+    closure_m: Floats = np.hypot(navs["px"] + navs["sx"], navs["py"] + navs["sy"])
     return closure_m.reshape(len(gains_stance), len(gains_swing))
 
 
-def best_of(closures_m: list[Floats], gains_stance: Floats = GAINS_STANCE, gains_swing: Floats = GAINS_SWING) -> Sweep:
+def best_of(
+    closures_m: list[Floats], gains_stance: Floats = GAINS_STANCE, gains_swing: Floats = GAINS_SWING
+) -> Sweep:
     """The pair of gains with the least mean closure over the feet, and the surface it lies on."""
     mean_m = np.mean(closures_m, axis=0)
     a, b = np.unravel_index(int(np.argmin(mean_m)), mean_m.shape)

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from app.blocks import BLOCK, Blocks
 from app.compiled import kernel
 from app.estimator import state as s
 from app.estimator.corrections import EVENT_WIDTH, Event, correct
+from app.estimator.gait import SWING
 from app.estimator.papers import Reading, step
 from app.estimator.state import Record, State
 from app.estimator.strapdown import bias_of_swing
@@ -20,7 +23,9 @@ EVENTS = 64
 
 
 @kernel
-def run(state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats) -> tuple[int, int]:
+def run(
+    state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats
+) -> tuple[int, int]:
     """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 12].
 
     Stops early when ``events`` [m, 15] is full. Returns the next sample's place and the events' count.
@@ -60,34 +65,66 @@ def write_event(event: Floats, now: State, happened: int) -> None:
         event[9], event[10], event[11] = now.from_x, now.from_y, now.from_z
 
 
+class Checkpoint(NamedTuple):
+    """What a tracker needs to go on from the first row of a block."""
+
+    state: Record
+    strides: int
+    distance_m: float
+
+
 class Tracker:
     """The estimate of one sensor under one settings record.
 
-    ``rows`` has one row per sample; a later sample may correct rows behind it. ``changed_from`` is
-    the first row that changed since the caller last set it to ``rows.end``.
+    ``rows`` has one row per sample; a later sample may correct rows behind it, but none before
+    ``settled_end``.
     """
 
-    def __init__(self, settings: Settings, start: int = 0, state: Record | None = None) -> None:
-        """Begin at row ``start`` (a multiple of ``BLOCK``), from another tracker's ``state`` there."""
+    def __init__(self, settings: Settings, start: int = 0, base: Checkpoint | None = None) -> None:
+        """Begin at row ``start`` (a multiple of ``BLOCK``), from another tracker's checkpoint there."""
         self.settings = settings
-        self.state = s.new_state(settings) if state is None else state.copy()
+        self._base = base or Checkpoint(s.new_state(settings), 0, 0.0)
+        self.state = self._base.state.copy()
         s.set_parameters(self.state, settings)
         self.rows = Blocks(ROW_WIDTH, start)
         self.strides: list[Stride] = []
-        self.distance_m = 0.0
+        self.distance_m = self._base.distance_m
         self.segments: list[int] = []  # rows where a segment begins, but for the first
-        self.changed_from = start
-        self.checkpoints: dict[int, Record] = {}  # state before a block's first row
+        self.checkpoints: dict[int, Checkpoint] = {}  # before each block's first row
         self._contact: Contact | None = None  # the last footprint of this segment
         self._events = np.zeros((EVENTS, EVENT_WIDTH))
+
+    @property
+    def levelled(self) -> bool:
+        """Whether level has been found."""
+        return bool(self.state["levelled"][0])
+
+    @property
+    def settled_end(self) -> int:
+        """Rows before this one will not change: those after the last quiet row of a swing under way may."""
+        state = self.state[0]
+        moving = state["phase"] == SWING or state["contrary_s"] > 0.0
+        return min(int(state["lift_row"]) + 1, self.rows.end) if moving else self.rows.end
+
+    @property
+    def stride_count(self) -> int:
+        """Strides so far, also those whose samples are gone."""
+        return self.strides[-1].number if self.strides else self._base.strides
 
     def advance(self, samples: Blocks) -> None:
         """Take every sample of the table that was not yet taken."""
         while self.rows.end < samples.end:
             block, place = samples.block(self.rows.end)
             if place == 0:
-                self.checkpoints[self.rows.end] = self.state.copy()
+                self.checkpoints[self.rows.end] = Checkpoint(
+                    self.state.copy(), self.stride_count, self.distance_m
+                )
             self._advance_in(samples, block, place, min(samples.end - self.rows.end, BLOCK - place))
+
+    def drop_oldest(self) -> None:
+        """Let the oldest block of rows go, and the checkpoint before it."""
+        self.checkpoints.pop(self.rows.start, None)
+        self.rows.drop_oldest()
 
     def _advance_in(self, samples: Blocks, block: Floats, place: int, count: int) -> None:
         base = self.rows.end - place
@@ -106,7 +143,6 @@ class Tracker:
             for rows, number in self.rows.pieces(first, last):
                 piece, place = samples.block(number)
                 correct(rows, number, piece[place : place + len(rows)], event)
-            self.changed_from = min(self.changed_from, first)
         if kind & s.STRIDE:
             self._add_stride(event)
         if kind & s.SEGMENT:
@@ -118,13 +154,14 @@ class Tracker:
         lifts = [lift_above_line(rows, event) for rows, _ in self.rows.pieces(lift, contact + 1)]
         before = self._contact or contact_at(self._row(lift), event[Event.LIFT_NS] * 1e-9)
         self._contact = contact_at(self._row(contact), event[Event.LIFT_NS] * 1e-9 + event[Event.SWING_S])
-        stride = stride_between(before, self._contact, event, len(self.strides) + 1, max(lifts))
+        stride = stride_between(before, self._contact, event, self.stride_count + 1, max(lifts))
         self.strides.append(stride)
         self.distance_m += stride.length_m
 
     def _row(self, number: int) -> Floats:
         block, place = self.rows.block(number)
-        return block[place]
+        row: Floats = block[place]
+        return row
 
 
 def store(samples: Samples) -> Blocks:

@@ -1,0 +1,215 @@
+"""Heart: a track is one named estimate of the whole walk: settings, and for each sensor rows and a trail.
+
+The main estimate, the candidate ("ghost") and what A/B swaps to are all tracks over one sample store.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from app.blocks import BLOCK, Blocks
+from app.estimator.tracker import Tracker
+from app.motion import (
+    SAMPLE_WIDTH,
+    Floats,
+    Footprint,
+    FootView,
+    GaitPhase,
+    Role,
+    Sample,
+    TrackView,
+    Trail,
+)
+from app.settings import Settings
+from app.trail import TrailBuilder
+
+#: Footprints shown.
+FOOTPRINTS = 40
+#: Standing longer than this many stride durations (and 1.5 s) after a contact is not walking.
+STANDING = 1.3
+
+
+class SensorStore:
+    """The samples of one sensor: what every track reads. Intake drops what cannot be used, and counts."""
+
+    def __init__(self, sensor: str, role: Role) -> None:
+        self.sensor = sensor
+        self.role = role
+        self.samples = Blocks(SAMPLE_WIDTH)
+        self.clocks = Blocks(2)  # host_ns, saturation
+        self.dropped: dict[str, int] = {}
+        self.saturated = 0
+        self._first_ns = 0
+        self._last_ns = 0
+
+    def take(self, sample: Sample) -> bool:
+        """Keep a sample if it is finite and later than the last one; say whether."""
+        force, rate, field = sample.specific_force_b, sample.angular_rate_b, sample.field_b
+        if not math.isfinite(force[0] + force[1] + force[2] + rate[0] + rate[1] + rate[2]):
+            return self._drop("not a number")
+        if not self.samples.end:
+            self._first_ns = sample.device_ns
+        elif sample.device_ns <= self._last_ns:
+            return self._drop("repeated time" if sample.device_ns == self._last_ns else "time went back")
+        self._last_ns = sample.device_ns
+        self.samples.grow(1)
+        block, place = self.samples.block(self.samples.end - 1)
+        block[place] = (sample.device_ns - self._first_ns, *force, *rate, *(field or NO_FIELD))
+        self.clocks.grow(1)
+        block, place = self.clocks.block(self.clocks.end - 1)
+        block[place] = (sample.host_ns, sample.saturation)
+        self.saturated += sample.saturation != 0
+        return True
+
+    def _drop(self, reason: str) -> bool:
+        self.dropped[reason] = self.dropped.get(reason, 0) + 1
+        return False
+
+    @property
+    def elapsed_s(self) -> float:
+        """Seconds from the first sample to the last."""
+        return (self._last_ns - self._first_ns) * 1e-9
+
+    def rate_hz(self, over: int = 100) -> float:
+        """Samples a second over the last ``over`` samples; 0 with fewer than two."""
+        last = self.samples.end - 1
+        first = max(self.samples.start, last - over)
+        if last <= first:
+            return 0.0
+        span_ns = self.time_ns(last) - self.time_ns(first)
+        return (last - first) * 1e9 / span_ns
+
+    def time_ns(self, row: int) -> float:
+        """Nanoseconds from the first sample to this one."""
+        block, place = self.samples.block(row)
+        return float(block[place, 0])
+
+    def row_at(self, elapsed_s: float) -> int:
+        """The first row at or after this time (bisection, so it does not grow with the walk)."""
+        low, high = self.samples.start, self.samples.end
+        while low < high:
+            middle = (low + high) // 2
+            if self.time_ns(middle) < elapsed_s * 1e9:
+                low = middle + 1
+            else:
+                high = middle
+        return low
+
+
+NO_FIELD = (math.nan, math.nan, math.nan)
+
+
+class FootTrack:
+    """One sensor's part of a track: the tracker, and the trail of its settled rows."""
+
+    def __init__(self, name: str, store: Blocks, settings: Settings, base: Tracker | None = None) -> None:
+        """Begin at the oldest sample there is; ``base`` is the track whose checkpoint stands there."""
+        start = store.start
+        self.tracker = Tracker(
+            settings, start, base.checkpoints[start] if base is not None and start else None
+        )
+        self.builder = TrailBuilder(name)
+        self._settled = start  # rows the builder has had
+        self._segments_seen = 0
+
+    def advance(self, store: Blocks) -> None:
+        """Take the samples that are new, and settle the trail up to the swing under way."""
+        self.tracker.advance(store)
+        settled = self.tracker.settled_end
+        while self._settled < settled:
+            breaks = self.tracker.segments[self._segments_seen :]
+            stop = min(settled, breaks[0]) if breaks else settled
+            for rows, _ in self.tracker.rows.pieces(self._settled, stop):
+                self.builder.add(rows)
+            self._settled = stop
+            if breaks and stop == breaks[0]:
+                self._segments_seen += 1
+                self.builder.lift_pen()
+
+    def trail(self) -> Trail:
+        """The trail now; the swing under way is provisional."""
+        rows = self.tracker.rows
+        return self.builder.trail(rows.table(max(self._settled, rows.end - BLOCK), rows.end))
+
+    def view(self, store: SensorStore, truth_n: Floats | None) -> FootView:
+        """This foot now. There must be a sample."""
+        tracker = self.tracker
+        block, place = tracker.rows.block(tracker.rows.end - 1)
+        row = block[place].tolist()
+        last = tracker.strides[-1] if tracker.strides else None
+        t_s = store.time_ns(tracker.rows.end - 1) * 1e-9
+        walking = last is not None and t_s - last.end_s < max(1.5, STANDING * last.duration_s)
+        position = (row[0], row[1], row[2])
+        return FootView(
+            sensor=store.sensor,
+            role=store.role,
+            t_s=t_s,
+            position_n=position,
+            velocity_n=(row[3], row[4], row[5]),
+            q_nb=(row[6], row[7], row[8], row[9]),
+            phase=GaitPhase(int(row[10])),
+            levelled=tracker.levelled,
+            strides=tracker.stride_count,
+            distance_m=tracker.distance_m,
+            speed_mps=last.length_m / last.duration_s if last and walking and last.duration_s > 0 else 0.0,
+            cadence_spm=120.0 / last.duration_s if last and walking and last.duration_s > 0 else 0.0,
+            height_m=-row[2],
+            to_start_m=math.hypot(row[0], row[1]),
+            trail=self.trail(),
+            footprints=tuple(
+                Footprint(s.number, s.end_n, s.heading_rad) for s in tracker.strides[-FOOTPRINTS:]
+            ),
+            error_m=None if truth_n is None else float(np.linalg.norm(truth_n - np.array(position))),
+        )
+
+
+class Track:
+    """Settings and one ``FootTrack`` for each sensor."""
+
+    def __init__(self, name: str, settings: Settings) -> None:
+        self.name = name
+        self.settings = settings
+        self.feet: dict[str, FootTrack] = {}
+
+    def advance(self, sensor: str, store: Blocks, base: Track | None = None) -> None:
+        """Take a sensor's new samples; a sensor not seen before joins."""
+        foot = self.feet.get(sensor)
+        if foot is None:
+            tracker = base.feet[sensor].tracker if base is not None and sensor in base.feet else None
+            foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, tracker)
+        foot.advance(store)
+
+    def view(self, stores: Mapping[str, SensorStore], truth_n: Mapping[str, Floats]) -> TrackView:
+        """The whole track now."""
+        feet = (foot.view(stores[sensor], truth_n.get(sensor)) for sensor, foot in self.feet.items())
+        return TrackView(self.name, self.settings, tuple(feet))
+
+    @property
+    def nbytes(self) -> int:
+        """Memory of all rows."""
+        return sum(foot.tracker.rows.nbytes for foot in self.feet.values())
+
+
+@dataclass(frozen=True, eq=False)
+class Reestimation:
+    """Work for another thread: the whole walk so far under other settings. ``run`` is pure."""
+
+    number: int
+    settings: Settings
+    stores: Mapping[str, Blocks]  # shared views: rows that are there never change
+    base: Track  # where old blocks are gone, its checkpoints begin the walk
+    apply: bool  # make it the main track as soon as it is there
+    who: str
+    reason: str
+    host_ns: int
+
+    def run(self) -> Track:
+        """The new track over all samples that were there when the work was given out."""
+        track = Track(f"track{self.number}", self.settings)
+        for sensor, store in self.stores.items():
+            track.advance(sensor, store, self.base)
+        return track

@@ -1,0 +1,63 @@
+"""Heart: everything that has to be compiled, one by one, so that a start can show it and no sample waits."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+import numpy as np
+
+from app.blocks import Blocks
+from app.estimator.corrections import EVENT_WIDTH, correct
+from app.estimator.strides import contact_at, lift_above_line
+from app.estimator.sweep import sweep
+from app.estimator.tracker import Tracker
+from app.motion import ROW_WIDTH, SAMPLE_WIDTH
+from app.rotation import from_yaw, rotate, yaw_of
+from app.settings import Settings
+from app.trail import TrailBuilder, coarser
+
+
+def still_samples(count: int = 8) -> Blocks:
+    """A foot at rest, 100 Hz."""
+    table = Blocks(SAMPLE_WIDTH)
+    rows = np.zeros((count, SAMPLE_WIDTH))
+    rows[:, 0] = np.arange(count) * 10_000_000
+    rows[:, 3] = -9.80665
+    table.extend(rows)
+    return table
+
+
+def parts() -> Iterator[tuple[str, Callable[[], None]]]:
+    """What is compiled, in words, and the call that compiles it."""
+    samples = still_samples()
+    rows, event = np.zeros((1, ROW_WIDTH)), np.zeros(EVENT_WIDTH)
+    rows[0, 6] = 1.0
+
+    def orientations() -> None:
+        yaw_of(from_yaw(0.1))
+        rotate((1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+
+    def corrections() -> None:
+        correct(rows, 0, samples.table(0, 1), event)
+        contact_at(rows[0], 0.0)
+        lift_above_line(rows, event)
+
+    def trails() -> None:
+        TrailBuilder("warm").add(rows)
+        coarser(np.zeros((2, 2, 3), np.float32), 1.0)
+
+    def search() -> None:
+        sweep(samples, Settings(), np.ones(1), np.ones(1))
+
+    yield "orientations", orientations
+    yield "the estimator", lambda: Tracker(Settings()).advance(samples)
+    yield "corrections", corrections
+    yield "trails", trails
+    yield "the search for gains", search
+
+
+def warm_up(tell: Callable[[str], None] = lambda what: None) -> None:
+    """Compile, or load from the cache, every kernel; ``tell`` hears what is next."""
+    for what, compile_it in parts():
+        tell(what)
+        compile_it()
