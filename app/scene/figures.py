@@ -1,0 +1,188 @@
+"""Edge, scene: what the panel says, as HTML: pure functions of snapshot and status."""
+
+from __future__ import annotations
+
+from app.motion import FootView, GaitPhase, Link, Role, Snapshot, Status
+from app.scene import words
+from app.scene.guard import drawable
+
+STALE_AFTER_S = 0.5
+FEET = {Role.LEFT: "Left foot", Role.RIGHT: "Right foot", Role.FOOT: "Foot", Role.OTHER: "Sensor"}
+LINKS = {
+    Link.WAITING: "waiting for samples", Link.LIVE: "live", Link.PAUSED: "paused", Link.ENDED: "ended",
+    Link.LOST: "connection lost",
+}  # fmt: skip
+
+
+def is_stale(status: Status) -> bool:
+    """Whether what is shown is older than a person would think."""
+    return status.stale_s > STALE_AFTER_S and status.link is not Link.ENDED
+
+
+def header(status: Status) -> str:
+    """Source, its state, and the big sign when data stopped."""
+    name = words.plain(status.source.name, 60)
+    link = f'<span class="ss-link ss-{status.link.value}">{LINKS[status.link]}</span>'
+    stale = f'<div class="ss-stale">STALE <b>{words.number(status.stale_s, 1)} s</b></div>' if is_stale(status) else ""
+    return f'<div class="ss-head"><span class="ss-source">{name}</span>{link}</div>{stale}'
+
+
+def message(snapshot: Snapshot, status: Status) -> str:
+    """One clear line, if there is something to say."""
+    lost = [FEET[f.role].lower() for f in snapshot.main.feet if not drawable(f)]
+    if lost:
+        text = f"The estimate of the {' and '.join(lost)} is not a finite number: shown at its last place."
+        return f'<div class="ss-message ss-bad">{text}</div>'
+    if status.message:
+        return f'<div class="ss-message">{words.plain(status.message)}</div>'
+    return ""
+
+
+def feet(snapshot: Snapshot) -> str:
+    """A card per foot."""
+    cards = "".join(_card(foot) for foot in snapshot.main.feet)
+    linked = len(snapshot.main.feet) > 1
+    note = '<div class="ss-note">Feet not linked: each has its own origin and start heading.</div>' if linked else ""
+    return cards + note if cards else '<div class="ss-note">No foot yet.</div>'
+
+
+def _card(foot: FootView) -> str:
+    error = foot.error_m
+    last = ("Error to truth", *words.metres(error)) if error is not None else ("Walked", words.clock(foot.t_s), "")
+    tiles = [
+        ("Strides", f"{foot.strides}", ""),
+        ("Distance", *words.metres(foot.distance_m)),
+        ("Speed", words.number(foot.speed_mps), "m/s"),
+        ("Cadence", words.number(foot.cadence_spm, 0), "steps/min"),
+        ("Height", words.number(foot.height_m), "m"),
+        ("To start", *words.metres(foot.to_start_m)),
+        ("of distance", words.percent(foot.to_start_m, foot.distance_m), ""),
+        last,
+    ]
+    grid = "".join(_tile(*tile) for tile in tiles)
+    return (
+        f'<div class="ss-card ss-{foot.role.value}"><div class="ss-card-head"><span class="ss-dot"></span>'
+        f"{FEET[foot.role]}{badge(foot)}</div><div class=\"ss-tiles\">{grid}</div></div>"
+    )
+
+
+def badge(foot: FootView) -> str:
+    """The gait phase: colour, shape and word."""
+    if not foot.levelled:
+        return '<span class="ss-phase ss-levelling">STAND STILL…</span>'
+    stance = foot.phase is GaitPhase.STANCE
+    mark, name = ("▬", "stance") if stance else ("▲", "swing")
+    return f'<span class="ss-phase ss-{name}"><i>{mark}</i>{name.upper()}</span>'
+
+
+def _tile(label: str, value: str, unit: str) -> str:
+    small = f" <small>{unit}</small>" if unit else ""
+    return f'<div class="ss-tile"><label>{label}</label><b>{value}</b>{small}</div>'
+
+
+def source(snapshot: Snapshot, status: Status) -> str:
+    """Format, rate, what was dropped, what was assumed."""
+    info = status.source
+    rows = [("Source", words.plain(info.name, 80)), ("Format", words.plain(info.format, 80))]
+    if info.rate_hz > 0:
+        rows.append(("Nominal rate", f"{words.number(info.rate_hz, 1)} Hz"))
+    if info.dropped:
+        rows.append(("Dropped on import", words.counts(dict(info.dropped))))
+    for sensor, health in snapshot.health.items():
+        rows.append((words.plain(sensor, 40), _health(health.rate_hz, health.taken, health.segments)))
+        rows.append(("· dropped", words.counts(dict(health.dropped))))
+        rows.append(("· saturated", f"{health.saturated} samples"))
+    rows.append(("Memory", f"{words.megabytes(snapshot.stored_bytes)} of {words.megabytes(snapshot.budget_bytes)}"))
+    rows.append(("Hindsight from", words.clock(snapshot.hindsight_from_s)))
+    rows.append(("Frame", _frame(snapshot)))
+    body = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows)
+    return f'<table class="ss-table">{body}</table>{_assumed(info.assumed)}'
+
+
+def _health(rate_hz: float, taken: int, segments: int) -> str:
+    plural = "" if segments == 1 else "s"
+    return f"{words.number(rate_hz, 1)} Hz, {taken} samples, {segments} segment{plural}"
+
+
+def _frame(snapshot: Snapshot) -> str:
+    north = "magnetic north" if snapshot.main.settings.magnetometer else "the start heading"
+    return f"north–east–down; N on the floor is {north}"
+
+
+def _assumed(sentences: tuple[str, ...]) -> str:
+    if not sentences:
+        return '<div class="ss-note">Nothing assumed: the source says its rate, units and mounting.</div>'
+    items = "".join(f"<li>{words.plain(s)}</li>" for s in sentences)
+    return f'<div class="ss-assumed"><b>Assumed</b><ul>{items}</ul></div>'
+
+
+def log(snapshot: Snapshot, rate_hz: float) -> str:
+    """The newest changes: when, what, who."""
+    if not snapshot.changes:
+        return '<div class="ss-note">No change applied yet.</div>'
+    rows = "".join(
+        f"<tr><th>{_when(change.number, rate_hz)}</th><td>{words.plain(change.what, 160)}"
+        f"<small>{words.plain(change.who, 40)}</small></td></tr>"
+        for change in snapshot.changes[:-9:-1]
+    )
+    return f'<table class="ss-table ss-log">{rows}</table>'
+
+
+def _when(number: int, rate_hz: float) -> str:
+    return words.clock(number / rate_hz) if rate_hz > 0 else f"sample {number}"
+
+
+def position(status: Status) -> str:
+    """Where a replay is."""
+    length = status.source.duration_s
+    whole = f" of {words.clock(length)}" if length is not None else ""
+    pace = "as fast as possible" if status.speed == 0 else f"{words.number(status.speed, 1)}× pace"
+    return (
+        f'<div class="ss-position"><span>{words.clock(status.position_s)}{whole}</span>'
+        f"<span>{LINKS[status.link]} · {pace}</span></div>"
+    )
+
+
+def comparison(snapshot: Snapshot) -> str:
+    """The candidate beside the main track: closure, distance, strides."""
+    if snapshot.candidate is None:
+        waiting = "re-estimating…" if snapshot.pending else "No candidate: move a slider to make one."
+        return f'<div class="ss-note">{waiting}</div>'
+    mains = {f.sensor: f for f in snapshot.main.feet}
+    body = "".join(
+        _compared(mains[f.sensor], f, len(mains) > 1) for f in snapshot.candidate.feet if f.sensor in mains
+    )
+    what = words.plain(snapshot.main.settings.differences(snapshot.candidate.settings), 200)
+    pending = '<span class="ss-pending">re-estimating…</span>' if snapshot.pending else ""
+    return (
+        '<div class="ss-candidate"><div class="ss-card-head"><span class="ss-dot"></span>Candidate'
+        f'{pending}</div><div class="ss-what">{what}</div><table class="ss-compare"><tr><td></td><th>main</th>'
+        f"<th>candidate</th><th>change</th></tr>{body}</table></div>"
+    )
+
+
+def _compared(main: FootView, other: FootView, named: bool) -> str:
+    head = f'<tr><th class="ss-who" colspan="4">{FEET[main.role]}</th></tr>' if named else ""
+    share = (f"{words.percent(f.to_start_m, f.distance_m)}" for f in (main, other))
+    rows = [
+        ("To start", main.to_start_m, other.to_start_m, 2, "m"),
+        ("Distance", main.distance_m, other.distance_m, 2, "m"),
+        ("Strides", main.strides, other.strides, 0, ""),
+    ]
+    cells = "".join(
+        f"<tr><td>{name}</td><td>{words.number(a, d)} {unit}</td><td>{words.number(b, d)} {unit}</td>"
+        f"<td>{words.signed(b - a, d)} {unit}</td></tr>"
+        for name, a, b, d, unit in rows
+    )
+    one, two = share
+    return f"{head}{cells}<tr><td>of distance</td><td>{one}</td><td>{two}</td><td></td></tr>"
+
+
+def slots(snapshot: Snapshot) -> str:
+    """What A and B hold, and which is on."""
+    marks = []
+    for slot in ("A", "B"):
+        kept = snapshot.slots.get(slot)
+        state = "on" if snapshot.slot_now == slot else "kept" if kept is not None else "empty"
+        marks.append(f'<span class="ss-slot ss-{state}">{slot} {state}</span>')
+    return f'<div class="ss-slots">{"".join(marks)}<span>undo: {snapshot.undo_depth} steps</span></div>'

@@ -1,0 +1,123 @@
+"""Edge, scene: the last ten seconds as graphs: |ω| against its threshold, speed, height."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+from viser import uplot
+
+from app.motion import FootView, Graph, Role, Snapshot
+from app.scene.colours import FOOT, GREEN, Rgb, css
+from app.scene.guard import finite_rows
+
+Floats = NDArray[np.float64]
+Columns = tuple[Floats, ...]
+
+POINTS = 200
+SPAN_S = 10.0
+HEIGHT_PX = 138
+THRESHOLD: Rgb = (222, 90, 80)
+NAMES = {Role.LEFT: "left", Role.RIGHT: "right", Role.FOOT: "", Role.OTHER: "sensor"}
+
+
+def times(graphs: Sequence[Graph]) -> Floats:
+    """One time axis for all feet: the last seconds up to the newest sample."""
+    newest = max((float(g.t_s[-1]) for g in graphs if len(g.t_s)), default=0.0)
+    oldest = min((float(g.t_s[0]) for g in graphs if len(g.t_s)), default=0.0)
+    return np.linspace(max(oldest, newest - SPAN_S), max(newest, oldest + 1e-3), POINTS)
+
+
+def on_axis(t_s: Floats, graph: Graph, column: str) -> Floats:
+    """One column at those times; the phase is not smoothed, and nothing reaches past the data."""
+    at, values = finite_rows((graph.t_s, getattr(graph, column)))
+    if len(at) == 0:
+        return np.zeros_like(t_s)
+    if column == "swing":
+        return values[np.clip(np.searchsorted(at, t_s, side="right") - 1, 0, len(at) - 1)]
+    return np.interp(t_s, at, values)
+
+
+class Graphs:
+    """Three graphs, made for the feet there are and made anew when those change."""
+
+    def __init__(self, gui: viser.GuiApi, container: Any) -> None:
+        self._gui, self._container = gui, container
+        self._roles: tuple[Role, ...] | None = None
+        self._plots: list[tuple[viser.GuiUplotHandle, Callable[[Snapshot, Floats], Columns]]] = []
+        self._drawn: object = None
+
+    def draw(self, snapshot: Snapshot) -> None:
+        """Bring the graphs up to date; the same snapshot's graphs cost nothing."""
+        if snapshot.graphs is self._drawn:
+            return
+        self._drawn = snapshot.graphs
+        feet = [f for f in snapshot.main.feet if f.sensor in snapshot.graphs]
+        roles = tuple(f.role for f in feet)
+        if roles != self._roles:
+            self._make(feet)
+            self._roles = roles
+        t_s = times([snapshot.graphs[f.sensor] for f in feet])
+        for plot, columns in self._plots:
+            plot.data = (t_s, *columns(snapshot, t_s))
+
+    def _make(self, feet: list[FootView]) -> None:
+        for plot, _ in self._plots:
+            plot.remove()
+        sensors = [f.sensor for f in feet]
+        roles = [f.role for f in feet]
+        with self._container:
+            self._plots = [
+                (_rate_plot(self._gui, roles), lambda shot, t: _rate_columns(shot, t, sensors)),
+                (_plot(self._gui, "Speed, m/s", roles), lambda shot, t: _columns(shot, t, sensors, "speed_mps")),
+                (_plot(self._gui, "Height, m", roles), lambda shot, t: _columns(shot, t, sensors, "height_m")),
+            ] if feet else []  # fmt: skip
+
+
+def _columns(snapshot: Snapshot, t_s: Floats, sensors: list[str], column: str) -> Columns:
+    return tuple(on_axis(t_s, snapshot.graphs[s], column) for s in sensors if s in snapshot.graphs)
+
+
+def _rate_columns(snapshot: Snapshot, t_s: Floats, sensors: list[str]) -> Columns:
+    threshold = np.full(len(t_s), snapshot.main.settings.threshold_radps)
+    phases = _columns(snapshot, t_s, sensors, "swing")
+    return (*phases, *_columns(snapshot, t_s, sensors, "statistic"), threshold)
+
+
+def _lines(roles: Sequence[Role], width: float = 1.6) -> list[uplot.Series]:
+    return [
+        uplot.Series(label=NAMES[r] or "foot", stroke=css(FOOT[r], 1.0), width=width, points={"show": False})
+        for r in roles
+    ]
+
+
+def _rate_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    """|ω| and Ω_th; swing is the shaded ground behind."""
+    phases = [
+        uplot.Series(
+            label=f"swing {NAMES[r]}".strip(), scale="phase", fill=css(FOOT[r] if len(roles) > 1 else GREEN, 0.22),
+            width=0, points={"show": False},
+        )
+        for r in roles
+    ]  # fmt: skip
+    threshold = uplot.Series(label="Ω_th", stroke=css(THRESHOLD), width=1.4, dash=(6, 4), points={"show": False})
+    series = [*phases, *_lines(roles), threshold]
+    return _add(gui, "Angular rate |ω|, rad/s, over Ω_th (dashed); shaded: swing", series)
+
+
+def _plot(gui: viser.GuiApi, title: str, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    return _add(gui, title, _lines(roles))
+
+
+def _add(gui: viser.GuiApi, title: str, series: list[uplot.Series]) -> viser.GuiUplotHandle:
+    zeros = np.zeros(2)
+    font = "11px system-ui, sans-serif"
+    return gui.add_uplot(
+        (np.array([0.0, 1.0]), *[zeros] * len(series)), (uplot.Series(label="s"), *series), title=title,
+        height=HEIGHT_PX, padding=(4, 10, 0, 0), legend={"show": False}, cursor={"show": False},
+        scales={"x": {"time": False}, "phase": {"range": (0.0, 1.0)}},
+        axes=({"size": 24, "font": font, "space": 60}, {"size": 34, "font": font, "space": 26}),
+    )  # fmt: skip

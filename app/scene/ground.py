@@ -1,0 +1,120 @@
+"""Edge, scene: floor, metre grid, compass rose, start mark, light and sky."""
+
+from __future__ import annotations
+
+import math
+from itertools import pairwise
+
+import numpy as np
+import viser
+from numpy.typing import NDArray
+
+from app.scene.colours import Rgb, Theme, blend, theme
+from app.scene.shoe import SENSOR_HEIGHT_M
+
+#: Strokes of the letters on the floor, x right and y up, one unit high.
+GLYPHS: dict[str, tuple[tuple[tuple[float, float], ...], ...]] = {
+    "N": (((0, 0), (0, 1), (0.7, 0), (0.7, 1)),),
+    "E": (((0.6, 0), (0, 0), (0, 1), (0.6, 1)), ((0, 0.5), (0.5, 0.5))),
+    "S": (((0.65, 0.85), (0.5, 1), (0.15, 1), (0, 0.85), (0, 0.65), (0.15, 0.5), (0.5, 0.5), (0.65, 0.35),
+           (0.65, 0.15), (0.5, 0), (0.15, 0), (0, 0.15)),),
+    "W": (((0, 1), (0.2, 0), (0.45, 0.7), (0.7, 0), (0.9, 1)),),
+    "m": (((0, 0), (0, 0.6)), ((0, 0.5), (0.12, 0.6), (0.28, 0.6), (0.38, 0.5), (0.38, 0)),
+          ((0.38, 0.5), (0.5, 0.6), (0.66, 0.6), (0.76, 0.5), (0.76, 0))),
+    "1": (((0.05, 0.8), (0.28, 1), (0.28, 0)),),
+    "5": (((0.6, 1), (0.08, 1), (0.03, 0.56), (0.35, 0.62), (0.58, 0.48), (0.62, 0.25), (0.48, 0.04),
+           (0.2, 0), (0, 0.13)),),
+    "0": (((0.3, 0), (0.06, 0.15), (0, 0.5), (0.06, 0.85), (0.3, 1), (0.54, 0.85), (0.6, 0.5), (0.54, 0.15),
+           (0.3, 0)),),
+    "2": (((0.02, 0.8), (0.15, 0.97), (0.42, 0.98), (0.58, 0.8), (0.5, 0.55), (0, 0), (0.62, 0)),),
+}  # fmt: skip
+
+
+def strokes(text: str, middle: tuple[float, float], height_m: float) -> NDArray[np.float32]:
+    """Line segments [k, 2, 3] in *n*, flat on the floor, that read as ``text`` seen from the south."""
+    lines: list[list[tuple[float, float]]] = []
+    width = 0.0
+    for letter in text:
+        if letter in GLYPHS:
+            lines += [[(width + x, y - 0.5) for x, y in line] for line in GLYPHS[letter]]
+            width += max(x for line in GLYPHS[letter] for x, _ in line)
+        width += 0.25
+    offset = 0.5 * (width - 0.25)
+    pairs = [(a, b) for line in lines for a, b in pairwise(line)]
+    flat = np.array([[(y, x - offset) for x, y in pair] for pair in pairs]) * height_m + np.array(middle)
+    return on_floor(flat)
+
+
+def on_floor(flat: NDArray[np.float64], above_m: float = 0.004) -> NDArray[np.float32]:
+    """North and east [k, 2, 2] → points [k, 2, 3] just above the floor."""
+    down = np.full((*flat.shape[:-1], 1), SENSOR_HEIGHT_M - above_m)
+    return np.concatenate([flat, down], axis=-1).astype(np.float32)
+
+
+def circle(radius_m: float, count: int = 96) -> NDArray[np.float64]:
+    """A circle round the start as segments [count, 2, 2]."""
+    angle = np.linspace(0, 2 * math.pi, count + 1)
+    points = radius_m * np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return np.stack([points[:-1], points[1:]], axis=1)
+
+
+def ticks(inner_m: float, outer_m: float, every_deg: float) -> NDArray[np.float64]:
+    """Short radial lines as segments [k, 2, 2]."""
+    angle = np.radians(np.arange(0, 360, every_deg))
+    way = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+    return np.stack([inner_m * way, outer_m * way], axis=1)
+
+
+def rose(colours: Theme) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """The compass rose: segments [k, 2, 3] and their colours [k, 2, 3], north in the accent."""
+    letters = [("E", (0.0, 0.76)), ("S", (-0.76, 0.0)), ("W", (0.0, -0.76))]
+    ink = [on_floor(circle(0.62)), on_floor(ticks(0.58, 0.62, 10)), on_floor(ticks(0.54, 0.62, 30)),
+           on_floor(circle(0.05, 24)), *(strokes(letter, at, 0.12) for letter, at in letters)]  # fmt: skip
+    north = [strokes("N", (0.78, 0.0), 0.15), on_floor(np.array([[[0.05, 0.0], [0.5, 0.0]]]))]
+    return _inked([(np.concatenate(ink), colours.ink), (np.concatenate(north), colours.accent)])
+
+
+def ruler(colours: Theme) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    """Metre marks along the north line: how far the bold grid lines are."""
+    marks = [strokes(f"{m} m", (m - 0.2, 0.4), 0.16) for m in (5, 10, 15, 20)]
+    return _inked([(np.concatenate(marks), blend(colours.ink, colours.floor, 0.35))])
+
+
+def _inked(parts: list[tuple[NDArray[np.float32], Rgb]]) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+    points = np.concatenate([segments for segments, _ in parts])
+    ink = [np.broadcast_to(np.array(colour, np.uint8), segments.shape) for segments, colour in parts]
+    return points, np.concatenate(ink)
+
+
+def sky(colours: Theme) -> NDArray[np.uint8]:
+    """The picture behind everything: [n, 1…, 3], darker above, the horizon's colour below."""
+    part = np.clip(np.linspace(0.0, 1.6, 256), 0, 1)[:, None] ** 1.3
+    column = np.array(colours.sky) * (1 - part) + np.array(colours.horizon) * part
+    return np.broadcast_to(np.rint(column)[:, None], (256, 16, 3)).astype(np.uint8)
+
+
+class Ground:
+    """All that never moves, under ``/ned``."""
+
+    def __init__(self, scene: viser.SceneApi, dark: bool) -> None:
+        self._scene = scene
+        scene.configure_default_lights(True, cast_shadow=True)
+        scene.configure_environment_map("studio", environment_intensity=0.55)
+        self.recolour(dark)
+
+    def recolour(self, dark: bool) -> None:
+        """Draw it in the theme's colours."""
+        colours = theme(dark)
+        scene = self._scene
+        scene.set_background_image(sky(colours), format="png")
+        # The grid's upper side is its plane's +z: turned over, since down is +z here.
+        scene.add_grid(
+            "/ned/ground", plane="xy", wxyz=(0.0, 1.0, 0.0, 0.0), position=(0.0, 0.0, SENSOR_HEIGHT_M),
+            infinite_grid=True, cell_size=1.0, cell_color=colours.cell, cell_thickness=1.0, section_size=5.0,
+            section_color=colours.section, section_thickness=1.4, fade_distance=45.0, fade_strength=1.2,
+            plane_color=colours.floor, plane_opacity=0.55, shadow_opacity=0.55 if dark else 0.28,
+        )  # fmt: skip
+        for name, (points, ink), thickness in (
+            ("/ned/compass", rose(colours), 1.8), ("/ned/ruler", ruler(colours), 1.4),
+        ):  # fmt: skip
+            scene.add_line_segments(name, points, ink, thickness=thickness, thickness_units="screen")

@@ -1,0 +1,19 @@
+"""Edge, scene: what is added to the head of viser's page: title, style, keys."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+from app.scene import private
+
+HERE = Path(__file__).parent
+
+
+def head(keys: dict[str, tuple[str, str]], resets: list[str]) -> str:
+    """HTML for the page's ``<head>``; only our own files and viser's uuids go into it."""
+    presses = {key: private.press(control, value) for key, (control, value) in keys.items()}
+    small = ",".join(f'[id="{uuid}"]' for uuid in resets)
+    style = (HERE / "page.css").read_text(encoding="utf-8").replace("[data-reset]", f":is({small})")
+    script = (HERE / "page.js").read_text(encoding="utf-8").replace("KEY_PRESSES", json.dumps(presses))
+    return f"<title>Stridescope</title><style>{style}</style><script>{script}</script>"

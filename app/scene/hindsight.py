@@ -1,0 +1,60 @@
+"""Edge, scene: the candidate beside the main track, A and B, and the search for the best gains."""
+
+from __future__ import annotations
+
+from app.motion import (
+    ApplyCandidate, DropCandidate, FindGains, KeepAs, SetApplyAtOnce, Snapshot, Status, Sweep, SwapAB, Undo,
+)  # fmt: skip
+from app.scene import figures, private, surface
+from app.scene.controls import Controls, Input
+
+
+class CandidateBox:
+    """Difference, apply, drop, undo, A and B."""
+
+    def __init__(self, controls: Controls) -> None:
+        self._compared = controls.gui.add_html("")
+        self.buttons = controls.choice(
+            "", {"Apply": ApplyCandidate, "Drop": DropCandidate, "Undo": Undo},
+            "Apply makes the candidate the walk, past and present; drop takes it away.",
+        )  # fmt: skip
+        self._at_once: Input = controls.checkbox(
+            "Apply at once", SetApplyAtOnce, False, "A moved slider changes the walk itself, without a ghost."
+        )
+        self.slots = controls.choice(
+            "A / B", {"Keep as A": lambda: KeepAs("A"), "Keep as B": lambda: KeepAs("B"), "Swap": SwapAB},
+            "Keep two settings and swap them (key B).",
+        )  # fmt: skip
+        self._kept = controls.gui.add_html("")
+
+    def show(self, snapshot: Snapshot) -> None:
+        """As the session is."""
+        for element, text in ((self._compared, figures.comparison(snapshot)), (self._kept, figures.slots(snapshot))):
+            if element.content != text:
+                element.content = text
+        self._at_once.show(snapshot.apply_at_once)
+
+
+class GainSearch:
+    """"Find gains": the button, its progress, the surface."""
+
+    def __init__(self, controls: Controls) -> None:
+        controls.gui.add_html(
+            '<div class="ss-note">Estimates the walk so far at every pair of gains and offers the pair that'
+            " ends nearest to the start: walk a loop and stop where you began.</div>"
+        )
+        self.button = controls.button("Find gains", FindGains)
+        self._progress = controls.gui.add_progress_bar(0.0, visible=False, animated=True)
+        self._picture = controls.gui.add_html("")
+        self._drawn: Sweep | None = None
+
+    def show(self, status: Status) -> None:
+        """As the sweep is."""
+        running = status.sweep_progress is not None
+        self._progress.visible = running
+        self.button.handle.disabled = running
+        if status.sweep_progress is not None:
+            private.set_progress(self._progress, status.sweep_progress)
+        if status.sweep is not self._drawn:
+            self._drawn = status.sweep
+            self._picture.content = surface.picture(status.sweep) if status.sweep is not None else ""

@@ -1,0 +1,19 @@
+// Keys, and a window without focus that still comes back after the server restarts.
+(() => {
+  const presses = KEY_PRESSES;
+  const typing = (target) =>
+    target instanceof HTMLElement &&
+    (target.isContentEditable || /^(input|textarea|select)$/i.test(target.tagName)) &&
+    !/^(checkbox|radio|range|button)$/i.test(target.type || "");
+  const fullScreen = () =>
+    document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+  window.addEventListener("keydown", (event) => {
+    if (event.repeat || event.ctrlKey || event.metaKey || event.altKey || typing(event.target)) return;
+    const key = event.key.toLowerCase();
+    if (key === "f") fullScreen().catch(() => {});
+    const viewer = window.__viserMutable;
+    if (presses[key] && viewer && viewer.sendMessage) viewer.sendMessage(presses[key]);
+  });
+  // viser retries a lost connection only while the document has the focus; a wall display has none.
+  document.hasFocus = () => document.visibilityState === "visible";
+})();

@@ -1,0 +1,99 @@
+"""Edge, scene: the page as a function of a snapshot: opens viser, draws, hands orders over."""
+
+from __future__ import annotations
+
+import logging
+import time
+from collections.abc import Mapping
+
+from app.motion import GuiRule, Quaternion, Snapshot, Status, Vector
+from app.scene import private
+from app.scene.controls import Controls, Submit
+from app.scene.follow import Glide, middle
+from app.scene.ground import Ground
+from app.scene.head import head
+from app.scene.panel import Panel
+from app.scene.shoe import SENSOR_HEIGHT_M
+from app.scene.walkers import Walkers
+
+log = logging.getLogger(__name__)
+
+#: North–east–down into viser's east–north–up: half a turn about the line between north and east.
+NED_WXYZ: Quaternion = (0.0, 0.5**0.5, 0.5**0.5, 0.0)
+TEXT_S, GRAPH_S = 0.1, 0.08
+LONGEST_STEP_S = 0.1
+
+
+def in_view(centre: Vector) -> Vector:
+    """Where ``/ned`` stands so that ``centre`` (in *n*) is in the middle and its floor at 0."""
+    north, east, down = centre
+    return (-east, -north, down + SENSOR_HEIGHT_M)
+
+
+class Scene:
+    """The page. ``submit`` is called from viser's thread with each order a browser gives."""
+
+    def __init__(self, submit: Submit) -> None:
+        self._server = private.open_server("Stridescope")
+        self.port = self._server.get_port()
+        self._view = {"follow": True, "dark": True, "axes": False}
+        self._glide, self._drawn_at, self._next_text, self._next_graph = Glide(), 0.0, 0.0, 0.0
+        self._controls = Controls(self._server.gui, submit)
+        self._root = self._server.scene.add_frame(
+            "/ned", wxyz=NED_WXYZ, position=in_view(self._glide.centre), show_axes=False
+        )
+        self._ground = Ground(self._server.scene, dark=True)
+        self._walkers = Walkers(self._server.scene)
+        self._theme(dark=True)
+        self.panel = Panel(self._controls, self._set_view, self._view)
+        self.head = head(self.panel.keys(), self.panel.resets())
+        self._start_camera()
+
+    def draw(self, snapshot: Snapshot, status: Status) -> None:
+        """Make every browser show this; cheap for what has not changed."""
+        now = time.monotonic()
+        self._follow(self._walkers.draw(snapshot), min(now - self._drawn_at, LONGEST_STEP_S))
+        self._drawn_at = now
+        if now >= self._next_graph:
+            self._next_graph = now + GRAPH_S
+            self.panel.show_graphs(snapshot)
+        if now >= self._next_text:
+            self._next_text = now + TEXT_S
+            self.panel.show_text(snapshot, status, self._view)
+        self._server.flush()
+
+    def rules(self) -> Mapping[str, GuiRule]:
+        """What a browser may write into each control, by the control's uuid."""
+        return self._controls.rules()
+
+    def close(self) -> None:
+        """Stop viser."""
+        private.close_server(self._server)
+
+    def _follow(self, places: list[Vector], elapsed_s: float) -> None:
+        if not self._view["follow"] or not places:
+            return
+        place = in_view(self._glide.towards(middle(places), elapsed_s))
+        private.force_pose(self._root, NED_WXYZ, place)
+
+    def _set_view(self, name: str, on: bool) -> None:
+        self._view[name] = on
+        if name == "dark":
+            self._theme(on)
+            self._ground.recolour(on)
+        if name == "axes":
+            self._walkers.show_axes(on)
+
+    def _theme(self, dark: bool) -> None:
+        self._server.gui.configure_theme(
+            dark_mode=dark, show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
+        )
+
+    def _start_camera(self) -> None:
+        """From behind and to the right, near enough to see the shoe, far enough for a stride."""
+        camera = self._server.initial_camera
+        camera.position = (1.25, -1.75, 1.05)
+        camera.look_at = (0.0, 0.15, 0.05)
+        camera.up = (0.0, 0.0, 1.0)
+        camera.fov = 0.72
+        camera.near, camera.far = 0.02, 500.0

@@ -1,0 +1,71 @@
+"""Edge, scene: everything this project uses of viser that viser does not promise (1.1.1).
+
+tests/scene/test_private.py is the contract: run it before any other version of viser is pinned.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import socket
+from typing import Any
+
+import numpy as np
+import viser
+from viser import _messages
+
+from app.motion import Quaternion, Vector
+
+Json = dict[str, Any]
+
+
+def open_server(label: str) -> viser.ViserServer:
+    """A viser on a free loopback port, silent, with no share tunnel."""
+    with contextlib.redirect_stdout(io.StringIO()):  # it prints the port nobody is told
+        server = viser.ViserServer(host="127.0.0.1", port=_free_port(), label=label, verbose=False)
+    for message in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
+        server._websock_server.unregister_handler(message)
+    return server
+
+
+def close_server(server: viser.ViserServer) -> None:
+    """Stop it, silently."""
+    with contextlib.redirect_stdout(io.StringIO()):
+        server.stop()
+
+
+def _free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def force_pose(node: viser.SceneNodeHandle, wxyz: Quaternion, position: Vector) -> None:
+    """Set a pose whatever it was: the public setter skips moves that ``np.allclose`` calls none.
+
+    Its tolerance grows with the coordinate: 2 mm at 200 m from the start.
+    """
+    node._impl.wxyz[:] = np.inf
+    node._impl.position[:] = np.inf
+    node.wxyz = wxyz
+    node.position = position
+
+
+def control_id(handle: Any) -> str:
+    """The name by which a browser writes into a GUI control: also its element's id."""
+    return str(handle._impl.uuid)
+
+
+def set_progress(bar: Any, part: float) -> None:
+    """How far a bar is, 0 to 1 (viser's class calls its own setter read-only)."""
+    bar.__setattr__("value", 100.0 * min(max(part, 0.0), 1.0))
+
+
+def broadcast_messages(server: viser.ViserServer) -> list[Any]:
+    """What a browser that joins now would be sent (for tests)."""
+    return list(server._websock_server._broadcast_buffer.message_from_id.values())
+
+
+def press(control: str, value: bool | str) -> Json:
+    """The message by which our script presses a button, as viser's own page sends it."""
+    return {"type": "GuiUpdateMessage", "uuid": control, "updates": {"value": value}}

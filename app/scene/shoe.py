@@ -1,0 +1,87 @@
+"""Edge, scene: the shoe: its parts from assets/shoe.glb, coloured, left or right, solid or ghost."""
+
+from __future__ import annotations
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import trimesh
+import viser
+from numpy.typing import NDArray
+
+from app.motion import Quaternion, Role, Vector
+from app.scene import private
+from app.scene.colours import FOOT, Rgb, shade
+
+ASSET = Path(__file__).resolve().parents[2] / "assets" / "shoe.glb"
+#: The sensor's height above the floor while the shoe stands flat (tools/make_shoe.py).
+SENSOR_HEIGHT_M = 0.112
+
+Mesh = tuple[NDArray[np.float32], NDArray[np.uint32]]
+
+
+@cache
+def parts(mirrored: bool) -> dict[str, Mesh]:
+    """Vertices [n, 3] in the shoe's axes and faces [m, 3] of each part; mirrored is the left shoe."""
+    side = -1 if mirrored else 1
+    flip = np.array([1.0, side, 1.0])
+    return {
+        name: ((mesh.vertices * flip).astype(np.float32), mesh.faces[:, ::side].astype(np.uint32))
+        for name, mesh in trimesh.load_scene(ASSET).geometry.items()
+    }
+
+
+def paint(colour: Rgb) -> dict[str, Rgb]:
+    """What colour each part has on a shoe of this colour."""
+    return {
+        "outsole": (38, 42, 50), "midsole": (240, 242, 245), "upper": colour, "toe_cap": shade(colour, 0.78),
+        "stripe": (246, 248, 250), "collar": shade(colour, 0.68), "lining": (30, 35, 43),
+        "tongue": shade(colour, 0.84), "laces": (240, 242, 244), "sensor": (36, 40, 48),
+        "light": (130, 255, 170),
+    }  # fmt: skip
+
+
+class Shoe:
+    """One shoe under a frame ``name``; a ghost is one colour and lets the light through."""
+
+    def __init__(self, scene: viser.SceneApi, name: str, role: Role, ghost: Rgb | None = None) -> None:
+        self.frame = scene.add_frame(name, show_axes=False, axes_length=0.09, axes_radius=0.0022)
+        self._last: tuple[Quaternion, Vector] | None = None
+        colours = paint(FOOT[role] if ghost is None else ghost)
+        for part, (vertices, faces) in parts(role is Role.LEFT).items():
+            if ghost is not None and part in ("lining", "light", "stripe", "laces"):
+                continue
+            scene.add_mesh_simple(
+                f"{name}/{part}", vertices, faces, color=colours[part] if ghost is None else ghost,
+                opacity=None if ghost is None else 0.32, flat_shading=part == "sensor", side="double",
+                cast_shadow=ghost is None, receive_shadow=ghost is None,
+            )  # fmt: skip
+
+    def pose(self, q_nb: Quaternion, position: Vector) -> None:
+        """Where it is now; nothing is sent while it has not moved."""
+        if (q_nb, position) != self._last:
+            private.force_pose(self.frame, q_nb, position)
+            self._last = (q_nb, position)
+
+    def show_axes(self, on: bool) -> None:
+        """The sensor's axes: x (red) toe, y (green) right, z (blue) down."""
+        self.frame.show_axes = on
+
+    def remove(self) -> None:
+        """Take it off the page."""
+        self.frame.remove()
+
+
+@cache
+def sole(mirrored: bool) -> Mesh:
+    """The print of the sole: a flat fan, in the shoe's x and y, around the sensor."""
+    flat = parts(mirrored)["outsole"][0][:, :2].astype(np.float64)
+    centre = np.array([flat[:, 0].mean(), 0.0])
+    x, y = (flat - centre).T
+    sector = np.floor((np.arctan2(y, x) / (2 * np.pi) + 0.5) * 36).astype(int)
+    edge = [flat[sector == i][np.argmax(np.hypot(x, y)[sector == i])] for i in np.unique(sector)]
+    vertices = np.concatenate([[centre], edge])
+    turn = np.arange(len(edge))
+    faces = np.stack([np.zeros_like(turn), turn + 1, (turn + 1) % len(edge) + 1], axis=1)
+    return np.pad(vertices, ((0, 0), (0, 1))).astype(np.float32), faces.astype(np.uint32)
