@@ -44,7 +44,7 @@ def parse(name: str, data: bytes, head: Head) -> Parsed:
         unread[_UNKNOWN_FOOT] = unknown
     feet = tuple(_foot(foot, table) for foot in _FEET if (table["foot"] == foot).any())
     if not feet:
-        raise InputError(f"{name}: column 'foot' reads {table['foot'][0]!r}, expected left, right or foot")
+        raise InputError(f"{name}: column 'foot' reads {str(table['foot'][0])!r}, expected left, right or foot")
     return Parsed(FORMAT, feet, unread, spec=_spec(head), mounted=True)
 
 
@@ -100,4 +100,4 @@ def _seconds(stamp_ns: int) -> str:
 
 def _gauss(field_ut: float) -> str:
     """µT in gauss, moved by two decimal places and not divided: a quotient would not come back."""
-    return str(Decimal(repr(field_ut)).scaleb(-2)) if field_ut == field_ut else ""
+    return f"{Decimal(repr(field_ut)).scaleb(-2):f}" if field_ut == field_ut else ""

@@ -153,14 +153,15 @@ def _shifted(cells: list[str], suffix: str) -> Floats:
     try:
         return np.array([float(cell + suffix) if cell else np.nan for cell in cells], np.float64)
     except ValueError:
-        return np.array([_decimal_float(cell, int(suffix[1:])) for cell in cells], np.float64)
+        return np.array([_shifted_float(cell, suffix) for cell in cells], np.float64)
 
 
-def _decimal_float(cell: str, digits: int) -> float:
+def _shifted_float(cell: str, suffix: str) -> float:
+    """One cell that is perhaps empty, perhaps written with an exponent of its own."""
     value = _decimal(cell)
     try:
-        return float(value.scaleb(digits)) if value is not None else float("nan")
-    except (InvalidOperation, OverflowError, ValueError):
+        return float(value.scaleb(int(suffix[1:]))) if value is not None else float("nan")
+    except (InvalidOperation, OverflowError):
         return float("nan")
 
 
@@ -194,4 +195,5 @@ def _exact_ns(cell: str, digits: int) -> int:
 
 def words(cells: list[str]) -> NDArray[np.str_]:
     """Words, in small letters."""
-    return np.array([cell.strip().strip('"').lower() for cell in cells], np.str_)
+    plain = {cell: cell.strip().strip('"').lower() for cell in set(cells)}
+    return np.array([plain[cell] for cell in cells], np.str_)
