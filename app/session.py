@@ -72,7 +72,7 @@ class Session:
             return
         self.main.advance(sample.sensor, store.samples)
         if self.candidate is not None:
-            self.candidate.advance(sample.sensor, store.samples, self.main)
+            self.candidate.advance(sample.sensor, store.samples)
         if store.samples.end % BLOCK == 1:
             self._keep_budget()
 
@@ -136,7 +136,7 @@ class Session:
         for sensor, store in self.stores.items():
             if sensor in track.feet and track.feet[sensor].tracker.rows.end < store.samples.start:
                 return  # the store has moved past it
-            track.advance(sensor, store.samples, self.main)
+            track.advance(sensor, store.samples, self.main.bases().get(sensor))
         if wanted.apply:
             self._make_main(track, wanted.who, wanted.host_ns, wanted.reason)
         else:
@@ -151,7 +151,7 @@ class Session:
         self._jobs += 1
         stores = {sensor: store.samples.share() for sensor, store in self.stores.items()}
         self.wanted = Reestimation(
-            self._jobs, settings, stores, self.main, apply, order.who, reason, order.host_ns
+            self._jobs, settings, stores, self.main.bases(), apply, order.who, reason, order.host_ns
         )
 
     def _make_main(self, track: Track, who: str, host_ns: int, reason: str) -> None:
@@ -197,7 +197,7 @@ class Session:
             store.clocks.drop_oldest()
             for track in (self.main, self.candidate):
                 if track is not None and sensor in track.feet:
-                    track.feet[sensor].tracker.drop_oldest()
+                    track.feet[sensor].drop_oldest()
 
     @property
     def stored_bytes(self) -> int:

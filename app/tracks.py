@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.blocks import BLOCK, Blocks
-from app.estimator.tracker import Tracker
+from app.estimator.tracker import Checkpoint, Tracker
 from app.motion import (
     SAMPLE_WIDTH,
     Floats,
@@ -106,19 +106,21 @@ NO_FIELD = (math.nan, math.nan, math.nan)
 class FootTrack:
     """One sensor's part of a track: the tracker, and the trail of its settled rows."""
 
-    def __init__(self, name: str, store: Blocks, settings: Settings, base: Tracker | None = None) -> None:
-        """Begin at the oldest sample there is; ``base`` is the track whose checkpoint stands there."""
+    def __init__(self, name: str, store: Blocks, settings: Settings, base: Checkpoint | None = None) -> None:
+        """Begin at the oldest sample there is; ``base`` is another track's checkpoint there."""
         start = store.start
-        self.tracker = Tracker(
-            settings, start, base.checkpoints[start] if base is not None and start else None
-        )
+        self.tracker = Tracker(settings, start, base)
         self.builder = TrailBuilder(name)
         self._settled = start  # rows the builder has had
         self._segments_seen = 0
+        self._footprints: tuple[Footprint, ...] = ()
 
     def advance(self, store: Blocks) -> None:
-        """Take the samples that are new, and settle the trail up to the swing under way."""
+        """Take the samples that are new."""
         self.tracker.advance(store)
+
+    def settle(self) -> None:
+        """Bring the trail up to the swing under way (when somebody looks, not for every sample)."""
         settled = self.tracker.settled_end
         while self._settled < settled:
             breaks = self.tracker.segments[self._segments_seen :]
@@ -132,8 +134,23 @@ class FootTrack:
 
     def trail(self) -> Trail:
         """The trail now; the swing under way is provisional."""
+        self.settle()
         rows = self.tracker.rows
         return self.builder.trail(rows.table(max(self._settled, rows.end - BLOCK), rows.end))
+
+    def drop_oldest(self) -> None:
+        """Let the oldest block of rows go; the trail has it."""
+        self.settle()
+        self.tracker.drop_oldest()
+
+    def footprints(self) -> tuple[Footprint, ...]:
+        """The newest ones, made anew only when there is a new stride."""
+        strides = self.tracker.strides
+        if strides and (not self._footprints or self._footprints[-1].number != strides[-1].number):
+            self._footprints = tuple(
+                Footprint(s.number, s.end_n, s.heading_rad) for s in strides[-FOOTPRINTS:]
+            )
+        return self._footprints
 
     def view(self, store: SensorStore, truth_n: Floats | None) -> FootView:
         """This foot now. There must be a sample."""
@@ -160,9 +177,7 @@ class FootTrack:
             height_m=-row[2],
             to_start_m=math.hypot(row[0], row[1]),
             trail=self.trail(),
-            footprints=tuple(
-                Footprint(s.number, s.end_n, s.heading_rad) for s in tracker.strides[-FOOTPRINTS:]
-            ),
+            footprints=self.footprints(),
             error_m=None if truth_n is None else float(np.linalg.norm(truth_n - np.array(position))),
         )
 
@@ -175,13 +190,17 @@ class Track:
         self.settings = settings
         self.feet: dict[str, FootTrack] = {}
 
-    def advance(self, sensor: str, store: Blocks, base: Track | None = None) -> None:
-        """Take a sensor's new samples; a sensor not seen before joins."""
+    def advance(self, sensor: str, store: Blocks, base: Checkpoint | None = None) -> None:
+        """Take a sensor's new samples; a sensor not seen before joins, from ``base`` if blocks are gone."""
         foot = self.feet.get(sensor)
         if foot is None:
-            tracker = base.feet[sensor].tracker if base is not None and sensor in base.feet else None
-            foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, tracker)
+            foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, base)
         foot.advance(store)
+
+    def bases(self) -> dict[str, Checkpoint]:
+        """For each sensor, the checkpoint at the oldest sample still here."""
+        trackers = ((sensor, foot.tracker) for sensor, foot in self.feet.items())
+        return {sensor: t.checkpoints[t.rows.start] for sensor, t in trackers if t.rows.start}
 
     def view(self, stores: Mapping[str, SensorStore], truth_n: Mapping[str, Floats]) -> TrackView:
         """The whole track now."""
@@ -201,7 +220,7 @@ class Reestimation:
     number: int
     settings: Settings
     stores: Mapping[str, Blocks]  # shared views: rows that are there never change
-    base: Track  # where old blocks are gone, its checkpoints begin the walk
+    bases: Mapping[str, Checkpoint]  # where old blocks are gone, what to begin the walk with
     apply: bool  # make it the main track as soon as it is there
     who: str
     reason: str
@@ -211,5 +230,5 @@ class Reestimation:
         """The new track over all samples that were there when the work was given out."""
         track = Track(f"track{self.number}", self.settings)
         for sensor, store in self.stores.items():
-            track.advance(sensor, store, self.base)
+            track.advance(sensor, store, self.bases.get(sensor))
         return track
