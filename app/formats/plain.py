@@ -44,7 +44,8 @@ def parse(name: str, data: bytes, head: Head) -> Parsed:
         unread[_UNKNOWN_FOOT] = unknown
     feet = tuple(_foot(foot, table) for foot in _FEET if (table["foot"] == foot).any())
     if not feet:
-        raise InputError(f"{name}: column 'foot' reads {str(table['foot'][0])!r}, expected left, right or foot")
+        first = str(table["foot"][0])
+        raise InputError(f"{name}: column 'foot' reads {first!r}, expected left, right or foot")
     return Parsed(FORMAT, feet, unread, spec=_spec(head), mounted=True)
 
 

@@ -1,4 +1,5 @@
 import io
+from typing import Any
 
 import numpy as np
 import pytest
@@ -11,7 +12,7 @@ from app.motion import InputError
 
 
 def mat(**variables: object) -> bytes:
-    file = io.BytesIO()
+    file: Any = io.BytesIO()  # the stubs know only paths
     scipy.io.savemat(file, variables)
     return file.getvalue()
 

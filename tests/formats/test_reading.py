@@ -65,7 +65,8 @@ def test_rest_at_a_tenth_of_g_in_a_column_of_g() -> None:
 
 def test_two_samples_are_a_recording() -> None:
     recording = read("walk.csv", plain(still(2)))
-    assert (len(recording.sensors[0]), recording.duration_s) == (2, pytest.approx(0.01))
+    assert len(recording.sensors[0]) == 2
+    assert recording.duration_s == pytest.approx(0.01)
 
 
 def test_one_sample_is_a_recording() -> None:
