@@ -74,6 +74,17 @@ def test_the_flat_foot_is_exactly_still_on_its_footprint(options: WalkOptions, s
         np.testing.assert_allclose([pitch, roll], 0.0, atol=1e-15)
 
 
+def largest_jumps(rate_hz: float) -> list[float]:
+    now = foot(WALKS[2], "foot").at(np.arange(1.0, 5.0, 1 / rate_hz))
+    return [np.abs(np.diff(x, axis=0)).max() for x in (now.acceleration_n, now.angular_rate_b, now.q_nb)]
+
+
+def test_stride_follows_stride_without_a_jump() -> None:
+    """What is continuous moves ten times less between samples that lie ten times closer."""
+    for coarse, fine in zip(largest_jumps(1e3), largest_jumps(1e4), strict=True):
+        assert fine < 0.11 * coarse
+
+
 def test_before_the_first_stride_and_after_the_last_nothing_moves() -> None:
     moving = foot(WALKS[1], "left")
     around = moving.at(np.array([-100.0, 0.0, 1e3, 1e6]))

@@ -119,6 +119,12 @@ def test_lost_samples_leave_gaps_and_nothing_else_changes() -> None:
     assert set(np.diff(some.matrix[:, 0])) >= {10e6, 20e6, 30e6}
 
 
+def test_the_first_sample_always_arrives() -> None:
+    """Truth is asked by the seconds since the first sample."""
+    starts = [samples(strides=1, lost_fraction=0.9, seed=seed).matrix[0, 0] for seed in range(20)]
+    assert not any(starts)
+
+
 def test_rounded_readings_lie_on_the_grid_and_near() -> None:
     fine, coarse = samples(noise=1.0), samples(noise=1.0, decimals=3)
     grid = np.array([1e-3] * 6 + [1e-1] * 3)  # 1 mG is 0.1 µT
@@ -161,6 +167,14 @@ def test_iron_bends_the_field_only_near_it() -> None:
     assert 9.0 < strange.max() < 21.0  # 0.1 gauss = 10 µT at 1 m, twice that at its poles
     assert 40.0 < bent.matrix[strange.argmax(), 0] * 1e-9 < 65.0  # half-way
     assert strange[0] < 0.001
+
+
+def test_both_feet_pass_the_same_iron() -> None:
+    """Beside it, on the axis of its poles, the field is 2 k / r³; one foot is 0.9 m away, the other 1.1 m."""
+    bent, straight = (simulate(WalkOptions(feet=2, iron_gauss_m3=k)).recording.sensors for k in (0.1, 0.0))
+    for foot, plain, away_m in zip(bent, straight, (1.1, 0.9), strict=True):
+        strange = np.linalg.norm(foot.matrix[:, FIELD] - plain.matrix[:, FIELD], axis=1)
+        assert strange.max() == pytest.approx(20.0 / away_m**3, rel=0.03)
 
 
 def test_the_field_is_the_papers() -> None:
