@@ -45,5 +45,5 @@ else
 fi
 rm -f .venv/.ready
 pip --require-hashes --only-binary :all: --requirement requirements.txt
-pip --no-deps --no-build-isolation --editable .
+PYTHONWARNINGS=ignore pip --no-deps --no-build-isolation --editable .
 echo "$wanted" >.venv/.ready
