@@ -1,0 +1,30 @@
+"""Door: what was let in and what was refused, as numbers."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+
+@dataclass
+class Counters:
+    """Written on the door's thread only; anyone may read."""
+
+    connections: int = 0  # browsers connected now
+    connections_total: int = 0
+    refused_host: int = 0
+    refused_origin: int = 0
+    refused_token: int = 0
+    refused_full: int = 0  # too many connections
+    closed_malformed: int = 0  # connections ended for a message that is none
+    closed_too_big: int = 0
+    dropped_messages: Counter[str] = field(default_factory=Counter)  # message type → how many
+
+    def refuse(self, what: str) -> None:
+        """Count one refusal: ``host``, ``origin``, ``token`` or ``full``."""
+        name = f"refused_{what}"
+        setattr(self, name, getattr(self, name) + 1)
+
+    def as_dict(self) -> dict[str, int | dict[str, int]]:
+        """All numbers by name, for a display."""
+        return {**vars(self), "dropped_messages": dict(self.dropped_messages)}
