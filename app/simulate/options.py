@@ -1,6 +1,7 @@
 """Heart: what `sim:walk` can be asked for: names, units, limits, sentences, and reading them from a SPEC.
 
-A key of a SPEC is a field of ``WalkOptions``, unit and all: ``sim:walk?path=eight&stride_m=1.3``.
+A key of a SPEC is a field of ``WalkOptions``; its unit may be left out:
+``sim:walk?path=eight&stride_m=1.3&rate=200``.
 """
 
 from __future__ import annotations
@@ -13,6 +14,20 @@ from typing import Any
 from app.motion import InputError
 
 MODELS = ("smooth", "papers")
+UNITS = (
+    "_m",
+    "_s",
+    "_hz",
+    "_spm",
+    "_deg",
+    "_dps",
+    "_g",
+    "_gauss",
+    "_mps2",
+    "_radps",
+    "_fraction",
+    "_gauss_m3",
+)
 PATHS = ("straight", "oval", "square", "eight", "stairs")
 
 
@@ -110,9 +125,13 @@ def parse(texts: Mapping[str, str]) -> WalkOptions:
     """The options of a SPEC's query; raises ``motion.InputError`` that says what is known."""
     known = {f.name: f.metadata["option"] for f in fields(WalkOptions)}
     values: dict[str, Any] = {}
-    for key, text in texts.items():
+    short = {key.removesuffix(unit): key for key in known for unit in UNITS if key.endswith(unit)}
+    for said, text in texts.items():
+        key = short.get(said, said)
         if key not in known:
-            raise InputError(f"sim:walk: unknown option {key!r}: expected one of {', '.join(known)}")
+            raise InputError(f"sim:walk: unknown option {said!r}: expected one of {', '.join(known)}")
+        if key in values:
+            raise InputError(f"sim:walk: {key} is given twice")
         values[key] = _read(key, text, known[key])
     return WalkOptions(**values)
 

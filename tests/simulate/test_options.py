@@ -83,3 +83,13 @@ def test_every_option_has_a_sentence_and_its_unit_in_its_name() -> None:
         plain = option.kind in ("choice", "switch", "integer") or name in ("noise", "bias", "iron_along")
         assert plain or re.search(units, name), name
     assert "papers" in MODELS
+
+
+def test_a_unit_may_be_left_out() -> None:
+    short = parse({"rate": "50", "cadence": "100", "gyro_bias": "0,0,1"})
+    assert short == parse({"rate_hz": "50", "cadence_spm": "100", "gyro_bias_radps": "0,0,1"})
+
+
+def test_a_key_said_both_ways_is_refused() -> None:
+    with pytest.raises(InputError, match="rate_hz is given twice"):
+        parse({"rate": "50", "rate_hz": "60"})
