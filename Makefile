@@ -17,7 +17,7 @@ chromium: setup
 test: chromium
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy
+	$(BIN)/mypy app tests tools $(wildcard benchmarks)
 	$(BIN)/python -m pytest
 
 bench: setup
