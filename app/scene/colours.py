@@ -14,7 +14,7 @@ Rgb = tuple[int, int, int]
 BLUE: Rgb = (0, 114, 178)
 ORANGE: Rgb = (230, 159, 0)
 GREEN: Rgb = (0, 158, 115)
-PURPLE: Rgb = (204, 121, 167)
+SWING: Rgb = (240, 228, 66)
 FOOT: dict[Role, Rgb] = {Role.LEFT: BLUE, Role.RIGHT: ORANGE, Role.FOOT: BLUE, Role.OTHER: (86, 180, 233)}
 CANDIDATE: Rgb = (214, 96, 196)
 TRUTH: Rgb = (60, 170, 120)
@@ -34,7 +34,7 @@ class Theme:
 
 
 DARK = Theme(
-    sky=(13, 17, 23), horizon=(30, 40, 54), floor=(22, 28, 37), cell=(44, 54, 68), section=(74, 90, 110),
+    sky=(13, 17, 23), horizon=(30, 40, 54), floor=(22, 28, 37), cell=(66, 80, 98), section=(104, 124, 150),
     ink=(150, 164, 182), accent=(240, 110, 90),
 )  # fmt: skip
 LIGHT = Theme(
@@ -58,6 +58,11 @@ def shade(colour: Rgb, factor: float) -> Rgb:
 def blend(one: Rgb, other: Rgb, part: float) -> Rgb:
     """From ``one`` (part 0) to ``other`` (part 1)."""
     return _rgb(np.array(one) * (1.0 - part) + np.array(other) * part)
+
+
+def linear(colour: Rgb) -> Rgb:
+    """The same colour for viser's batched meshes, which take it for linear light and brighten it."""
+    return _rgb(255.0 * (np.array(colour) / 255.0) ** 2.2)
 
 
 def css(colour: Rgb, alpha: float = 1.0) -> str:

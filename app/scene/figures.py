@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
+import math
+from dataclasses import fields
+
 from app.motion import FootView, GaitPhase, Link, Role, Snapshot, Status
 from app.scene import words
 from app.scene.guard import drawable
+from app.settings import LIMITS, Limit, Settings, Value
 
 STALE_AFTER_S = 0.5
 FEET = {Role.LEFT: "Left foot", Role.RIGHT: "Right foot", Role.FOOT: "Foot", Role.OTHER: "Sensor"}
@@ -43,7 +47,16 @@ def feet(snapshot: Snapshot) -> str:
     cards = "".join(_card(foot) for foot in snapshot.main.feet)
     linked = len(snapshot.main.feet) > 1
     note = '<div class="ss-note">Feet not linked: each has its own origin and start heading.</div>' if linked else ""
-    return cards + note if cards else '<div class="ss-note">No foot yet.</div>'
+    return cards + note + legend(snapshot) if cards else '<div class="ss-note">No foot yet.</div>'
+
+
+def legend(snapshot: Snapshot) -> str:
+    """Which line is which."""
+    lines = [("walk", "walk"), ("newest", "newest stride, not yet corrected")]
+    lines += [("candidate", "candidate")] if snapshot.candidate else []
+    lines += [("truth", "truth")] if snapshot.truth else []
+    keys = "".join(f'<span><i class="ss-{name}"></i>{label}</span>' for name, label in lines)
+    return f'<div class="ss-legend">{keys}</div>'
 
 
 def _card(foot: FootView) -> str:
@@ -143,6 +156,25 @@ def position(status: Status) -> str:
     )
 
 
+def _undo(depth: int) -> str:
+    return f"{depth} change{'' if depth == 1 else 's'} to undo"
+
+
+def differences(one: Settings, other: Settings) -> str:
+    """What differs, by symbol and unit: ``k_s 1.05 → 1.6 1/s``."""
+    names = [f.name for f in fields(Settings) if getattr(one, f.name) != getattr(other, f.name)]
+    return ", ".join(_difference(LIMITS[n], getattr(one, n), getattr(other, n)) for n in names) or "same settings"
+
+
+def _difference(limit: Limit, before: Value, after: Value) -> str:
+    if isinstance(before, bool):
+        return f"{limit.label} {'on' if after else 'off'}"
+    if isinstance(before, float) and isinstance(after, float):
+        k, unit = (math.degrees(1.0), "°") if limit.unit == "rad" else (1.0, limit.unit)
+        return f"{limit.symbol or limit.label} {before * k:.4g} → {after * k:.4g} {unit}"
+    return f"{limit.label} {before} → {after}"
+
+
 def comparison(snapshot: Snapshot) -> str:
     """The candidate beside the main track: closure, distance, strides."""
     if snapshot.candidate is None:
@@ -152,7 +184,7 @@ def comparison(snapshot: Snapshot) -> str:
     body = "".join(
         _compared(mains[f.sensor], f, len(mains) > 1) for f in snapshot.candidate.feet if f.sensor in mains
     )
-    what = words.plain(snapshot.main.settings.differences(snapshot.candidate.settings), 200)
+    what = words.plain(differences(snapshot.main.settings, snapshot.candidate.settings), 200)
     pending = '<span class="ss-pending">re-estimating…</span>' if snapshot.pending else ""
     return (
         '<div class="ss-candidate"><div class="ss-card-head"><span class="ss-dot"></span>Candidate'
@@ -185,4 +217,4 @@ def slots(snapshot: Snapshot) -> str:
         kept = snapshot.slots.get(slot)
         state = "on" if snapshot.slot_now == slot else "kept" if kept is not None else "empty"
         marks.append(f'<span class="ss-slot ss-{state}">{slot} {state}</span>')
-    return f'<div class="ss-slots">{"".join(marks)}<span>undo: {snapshot.undo_depth} steps</span></div>'
+    return f'<div class="ss-slots">{"".join(marks)}<span>{_undo(snapshot.undo_depth)}</span></div>'

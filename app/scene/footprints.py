@@ -8,12 +8,13 @@ import numpy as np
 import viser
 
 from app.motion import Footprint, Role, Vector
-from app.scene.colours import FOOT
+from app.scene.colours import FOOT, Rgb, blend, linear
 from app.scene.guard import FAR_M
 from app.scene.shoe import SENSOR_HEIGHT_M, sole
 
 PRINTS = 64  # drawn at most; a fixed batch, since its arrays are sent together
 NUMBERED = 8
+PALE: Rgb = (128, 138, 150)
 
 
 def number_step(count: int) -> int:
@@ -30,7 +31,7 @@ class Footprints:
         self._batch = scene.add_batched_meshes_simple(
             f"/ned/prints/{name}/soles", vertices, faces, batched_wxyzs=np.tile([1.0, 0, 0, 0], (PRINTS, 1)),
             batched_positions=np.zeros((PRINTS, 3)), batched_scales=np.zeros(PRINTS),
-            batched_colors=FOOT[role], opacity=0.38, side="double", cast_shadow=False, receive_shadow=False, lod="off",
+            batched_colors=linear(blend(FOOT[role], PALE, 0.35)), side="double", cast_shadow=False, receive_shadow=False, lod="off",
         )  # fmt: skip
         self._labels = [
             scene.add_label(

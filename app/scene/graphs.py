@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from viser import uplot
 
 from app.motion import FootView, Graph, Role, Snapshot
-from app.scene.colours import FOOT, GREEN, Rgb, css
+from app.scene.colours import FOOT, SWING, Rgb, css
 from app.scene.guard import finite_rows
 
 Floats = NDArray[np.float64]
@@ -98,14 +98,14 @@ def _rate_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle
     """|ω| and Ω_th; swing is the shaded ground behind."""
     phases = [
         uplot.Series(
-            label=f"swing {NAMES[r]}".strip(), scale="phase", fill=css(FOOT[r] if len(roles) > 1 else GREEN, 0.22),
+            label=f"swing {NAMES[r]}".strip(), scale="phase", fill=css(FOOT[r] if len(roles) > 1 else SWING, 0.2),
             width=0, points={"show": False},
         )
         for r in roles
     ]  # fmt: skip
     threshold = uplot.Series(label="Ω_th", stroke=css(THRESHOLD), width=1.4, dash=(6, 4), points={"show": False})
     series = [*phases, *_lines(roles), threshold]
-    return _add(gui, "Angular rate |ω|, rad/s, over Ω_th (dashed); shaded: swing", series)
+    return _add(gui, "|ω|, rad/s (dashed Ω_th, shaded swing)", series)
 
 
 def _plot(gui: viser.GuiApi, title: str, roles: Sequence[Role]) -> viser.GuiUplotHandle:
@@ -119,5 +119,5 @@ def _add(gui: viser.GuiApi, title: str, series: list[uplot.Series]) -> viser.Gui
         (np.array([0.0, 1.0]), *[zeros] * len(series)), (uplot.Series(label="s"), *series), title=title,
         height=HEIGHT_PX, padding=(4, 10, 0, 0), legend={"show": False}, cursor={"show": False},
         scales={"x": {"time": False}, "phase": {"range": (0.0, 1.0)}},
-        axes=({"size": 24, "font": font, "space": 60}, {"size": 34, "font": font, "space": 26}),
+        axes=({"size": 24, "font": font, "space": 60}, {"size": 40, "font": font, "space": 26}),
     )  # fmt: skip

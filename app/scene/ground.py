@@ -65,25 +65,23 @@ def ticks(inner_m: float, outer_m: float, every_deg: float) -> NDArray[np.float6
     return np.stack([inner_m * way, outer_m * way], axis=1)
 
 
-def rose(colours: Theme) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-    """The compass rose: segments [k, 2, 3] and their colours [k, 2, 3], north in the accent."""
+def rose() -> NDArray[np.float32]:
+    """The compass rose without its north: segments [k, 2, 3]."""
     letters = [("E", (0.0, 0.76)), ("S", (-0.76, 0.0)), ("W", (0.0, -0.76))]
-    ink = [on_floor(circle(0.62)), on_floor(ticks(0.58, 0.62, 10)), on_floor(ticks(0.54, 0.62, 30)),
-           on_floor(circle(0.05, 24)), *(strokes(letter, at, 0.12) for letter, at in letters)]  # fmt: skip
-    north = [strokes("N", (0.78, 0.0), 0.15), on_floor(np.array([[[0.05, 0.0], [0.5, 0.0]]]))]
-    return _inked([(np.concatenate(ink), colours.ink), (np.concatenate(north), colours.accent)])
+    parts = [on_floor(circle(0.62)), on_floor(ticks(0.58, 0.62, 10)), on_floor(ticks(0.54, 0.62, 30)),
+             on_floor(circle(0.05, 24)), *(strokes(letter, at, 0.12) for letter, at in letters)]  # fmt: skip
+    return np.concatenate(parts)
 
 
-def ruler(colours: Theme) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
+def north() -> NDArray[np.float32]:
+    """The rose's north: the letter and an arrow from the start."""
+    arrow = np.array([[[0.05, 0.0], [0.5, 0.0]], [[0.5, 0.0], [0.43, 0.03]], [[0.5, 0.0], [0.43, -0.03]]])
+    return np.concatenate([strokes("N", (0.78, 0.0), 0.15), on_floor(arrow)])
+
+
+def ruler() -> NDArray[np.float32]:
     """Metre marks along the north line: how far the bold grid lines are."""
-    marks = [strokes(f"{m} m", (m - 0.2, 0.4), 0.16) for m in (5, 10, 15, 20)]
-    return _inked([(np.concatenate(marks), blend(colours.ink, colours.floor, 0.35))])
-
-
-def _inked(parts: list[tuple[NDArray[np.float32], Rgb]]) -> tuple[NDArray[np.float32], NDArray[np.uint8]]:
-    points = np.concatenate([segments for segments, _ in parts])
-    ink = [np.broadcast_to(np.array(colour, np.uint8), segments.shape) for segments, colour in parts]
-    return points, np.concatenate(ink)
+    return np.concatenate([strokes(f"{m} m", (m - 0.2, 0.4), 0.16) for m in (1, 2, 5, 10, 15, 20)])
 
 
 def sky(colours: Theme) -> NDArray[np.uint8]:
@@ -99,7 +97,6 @@ class Ground:
     def __init__(self, scene: viser.SceneApi, dark: bool) -> None:
         self._scene = scene
         scene.configure_default_lights(True, cast_shadow=True)
-        scene.configure_environment_map("studio", environment_intensity=0.55)
         self.recolour(dark)
 
     def recolour(self, dark: bool) -> None:
@@ -110,11 +107,13 @@ class Ground:
         # The grid's upper side is its plane's +z: turned over, since down is +z here.
         scene.add_grid(
             "/ned/ground", plane="xy", wxyz=(0.0, 1.0, 0.0, 0.0), position=(0.0, 0.0, SENSOR_HEIGHT_M),
-            infinite_grid=True, cell_size=1.0, cell_color=colours.cell, cell_thickness=1.0, section_size=5.0,
+            infinite_grid=True, cell_size=1.0, cell_color=colours.cell, cell_thickness=1.2, section_size=5.0,
             section_color=colours.section, section_thickness=1.4, fade_distance=45.0, fade_strength=1.2,
             plane_color=colours.floor, plane_opacity=0.55, shadow_opacity=0.55 if dark else 0.28,
         )  # fmt: skip
-        for name, (points, ink), thickness in (
-            ("/ned/compass", rose(colours), 1.8), ("/ned/ruler", ruler(colours), 1.4),
-        ):  # fmt: skip
-            scene.add_line_segments(name, points, ink, thickness=thickness, thickness_units="screen")
+        self._draw("/ned/compass", rose(), colours.ink, 1.6)
+        self._draw("/ned/compass_north", north(), colours.accent, 2.4)
+        self._draw("/ned/ruler", ruler(), blend(colours.ink, colours.floor, 0.3), 1.4)
+
+    def _draw(self, name: str, segments: NDArray[np.float32], ink: Rgb, thickness: float) -> None:
+        self._scene.add_line_segments(name, segments, ink, thickness=thickness, thickness_units="screen")

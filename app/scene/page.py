@@ -92,8 +92,8 @@ class Scene:
     def _start_camera(self) -> None:
         """From behind and to the right, near enough to see the shoe, far enough for a stride."""
         camera = self._server.initial_camera
-        camera.position = (1.25, -1.75, 1.05)
-        camera.look_at = (0.0, 0.15, 0.05)
+        camera.position = (1.15, -1.65, 0.95)
+        camera.look_at = (0.05, 0.1, -0.12)
         camera.up = (0.0, 0.0, 1.0)
         camera.fov = 0.72
         camera.near, camera.far = 0.02, 500.0

@@ -137,6 +137,6 @@ def _rate(snapshot: Snapshot, status: Status) -> float:
 
 def _graph_panel(gui: viser.GuiApi) -> Graphs:
     panel = gui.add_panel()
-    tab: Any = panel.add_tab("The last 10 seconds")
+    tab: Any = panel.add_tab("Last 10 s")
     panel.float(x=12, y=-12, width=GRAPHS_WIDTH_PX, height=GRAPHS_HEIGHT_PX)
     return Graphs(gui, tab)
