@@ -57,7 +57,7 @@ def turn(vectors: Floats, axes: Axes) -> Floats:
 def snap(rest_force: Floats) -> Axes:
     """The mounting nearest to gravity: down is the sensor axis that the force at rest [3] opposes.
 
-    Gravity says nothing of the heading, so sensor x is taken to point forward: it is the toe, or,
+    Gravity says nothing of the heading, so sensor x is taken as forward: it is the toe, or,
     where x itself is upright, the toe is the axis that lies under its lean.
     """
     index = int(np.argmax(np.abs(rest_force)))

@@ -14,6 +14,7 @@ from app.formats.options import Options
 from app.formats.raw import Parsed, RawFoot, even_stamps
 from app.formats.rest import Rest, check_units, find_rest
 from app.formats.saturation import RANGES, Range, saturation
+from app.formats.swing import face_forward
 from app.formats.table import read_head, to_text
 from app.motion import InputError, Recording, Samples
 
@@ -36,18 +37,19 @@ def read(name: str, data: bytes, options: Options | None = None) -> Recording:
     told = options or Options()
     parsed = _pick(name, _timed(_parse(name, data, told.rate_hz), told.rate_hz), told.foot)
     cleaned = [_clean(name, foot) for foot in parsed.feet]
-    rests = [find_rest(samples) for samples in cleaned]
-    for samples, rest in zip(cleaned, rests, strict=True):
-        check_units(name, samples, rest, parsed.force_unit)
-    axes = [_axes(parsed, told, rest) for rest in rests]
     full_scale = RANGES[told.device or parsed.device or "csv"]
-    sensors = [_turned(samples, a, full_scale) for samples, a in zip(cleaned, axes, strict=True)]
-    sentences = [_mounting_sentences(*foot, parsed, told) for foot in zip(sensors, rests, axes, strict=True)]
+    sensors, sentences = [], list(parsed.assumed)
+    for samples in cleaned:
+        rest = find_rest(samples)
+        check_units(name, samples, rest, parsed.force_unit)
+        axes, how = _mounted(samples, rest, parsed, told)
+        sensors.append(_turned(samples, axes, full_scale))
+        sentences += [how, *_doubts(samples, rest, axes)]
     return Recording(
         name=name,
         format=parsed.format,
         sensors=tuple(_with_unread(sensors, parsed)),
-        assumed=(*parsed.assumed, *dict.fromkeys(sentence for foot in sentences for sentence in foot)),
+        assumed=tuple(dict.fromkeys(sentence for sentence in sentences if sentence)),
         spec=parsed.spec,
         dropped_rows=_dropped_rows(sensors, parsed),
     )
@@ -150,22 +152,27 @@ def _dropped_rows(sensors: list[Samples], parsed: Parsed) -> int:
     return sum(parsed.unread.values()) + (max(per_foot) if parsed.wide else sum(per_foot))
 
 
-def _axes(parsed: Parsed, told: Options, rest: Rest) -> Axes:
-    return told.axes or (mounting.AS_GIVEN if parsed.mounted else mounting.snap(rest.force))
-
-
-def _mounting_sentences(samples: Samples, rest: Rest, axes: Axes, parsed: Parsed, told: Options) -> list[str]:
-    """What was taken for granted about one foot's axes, in words."""
-    sentences = []
+def _mounted(samples: Samples, rest: Rest, parsed: Parsed, told: Options) -> tuple[Axes, str]:
+    """How the sensor sits, and in words where that is from; no words where the format says it."""
     if told.axes:
-        sentences.append(f"{mounting.describe(axes)}, as told")
-    elif not parsed.mounted:
-        whose = f"{samples.sensor}: " if len(parsed.feet) > 1 else ""
-        sentences.append(f"{whose}{mounting.describe(axes)} assumed from gravity at rest, sensor x forward")
+        return told.axes, f"{mounting.describe(told.axes)}, as told"
+    if parsed.mounted:
+        return mounting.AS_GIVEN, ""
+    axes = mounting.snap(rest.force)
+    forward = face_forward(samples, axes) if rest.still else None
+    why = "the swing of the foot" if forward else "sensor x taken as forward"
+    whose = f"{samples.sensor}: " if len(parsed.feet) > 1 else ""
+    chosen = forward or axes
+    return chosen, f"{whose}{mounting.describe(chosen)}, assumed from gravity at rest and {why}"
+
+
+def _doubts(samples: Samples, rest: Rest, axes: Axes) -> list[str]:
+    """What the foot at rest does not bear out, in words."""
+    doubts = []
     force = mounting.turn(rest.force[None], axes)[0]
     if mounting.snap(force)[2] != mounting.AS_GIVEN[2]:
         reading = ", ".join(f"{value:.1f}" for value in force)
-        sentences.append(f"{samples.sensor} rests at ({reading}) m/s²: z is not down, expected (0, 0, −9.8)")
+        doubts.append(f"{samples.sensor} rests at ({reading}) m/s²: z is not down, expected (0, 0, −9.8)")
     if not rest.still:
-        sentences.append(f"{samples.sensor} never rests: units and mounting could not be checked")
-    return sentences
+        doubts.append(f"{samples.sensor} never rests: units and mounting could not be checked")
+    return doubts

@@ -98,7 +98,8 @@ def test_the_measured_short_walk(shared_data) -> None:
     assert samples.rate_hz == pytest.approx(400, rel=0.01)
     assert np.diff(samples.matrix[:, 0]).min() > 0
     assert (
-        "toe = x, right = −y, down = −z assumed from gravity at rest, sensor x forward" in recording.assumed
+        "toe = x, right = −y, down = −z, assumed from gravity at rest and the swing of the foot"
+        in recording.assumed
     )
 
 
