@@ -5,7 +5,6 @@ from __future__ import annotations
 import http.server
 import threading
 from collections.abc import Callable, Iterator
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -76,7 +75,7 @@ def visit(context: BrowserContext, house: Any) -> tuple[Page, list[str]]:
 
 
 def test_the_page_works_through_the_door(
-    context: BrowserContext, open_house: Callable[..., Any], wait: Callable[..., None], build_dir: Path
+    context: BrowserContext, open_house: Callable[..., Any], wait: Callable[..., None]
 ) -> None:
     head = "<style>body{--ours:1}</style><script>window.ours = 1</script>"
     house = open_house(token="a token", extra_head=head)
@@ -92,14 +91,13 @@ def test_the_page_works_through_the_door(
     assert page.url == f"{house.origin}/?fixedDpr=1"  # the token has left the address
     assert page.evaluate("window.ours") == 1
     wait(lambda: page.evaluate(ORANGE_PIXELS) > 1000)
-    page.get_by_text("press me").click()
+    page.get_by_text("press me").dispatch_event("click")
     wait(lambda: pressed == ["button"])
     page.keyboard.press("r")
     wait(lambda: pressed == ["button", "hotkey"])
     page.get_by_role("slider").first.focus()
     page.keyboard.press("End")
     wait(lambda: house.slider.value == 2.0)
-    page.screenshot(path=build_dir / "door.png")
     assert complaints == []
     assert house.door.counters.dropped_messages == {}
     assert house.door.counters.connections == 1
@@ -112,7 +110,7 @@ def test_script_in_markup_does_not_run(context: BrowserContext, open_house: Call
     house.viser.gui.add_html(HOSTILE)
     page, complaints = visit(context, house)
     for here in page.get_by_text("here", exact=True).all():
-        here.click()
+        here.dispatch_event("click")
     assert page.evaluate("window.ran") is None
     assert any("Content Security Policy" in complaint for complaint in complaints)
 
