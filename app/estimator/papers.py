@@ -68,6 +68,7 @@ def observe(state: State, reading: Reading) -> tuple[int, float]:
         dt_s = 0.0
     elif dt_s > s.GAP_S:
         happened = end_segment(state)
+        dt_s = 0.0  # the first sample of a segment, as of the walk: the gap is no time of rest
     state.elapsed_ns = reading.elapsed_ns
     state.fx, state.fy, state.fz = reading.force_b
     state.wx = reading.rate_b[0] - state.bias_x
