@@ -23,10 +23,14 @@ from app.motion import (
     Sample,
     TrackView,
     Trail,
+    Vector,
 )
 from app.settings import Settings
 from app.trail import TrailBuilder
 
+NO_FIELD = (math.nan, math.nan, math.nan)
+#: m/s², rad/s or µT: no sensor reads that, and its square would spoil every sum (as in formats/clean).
+MOST = 1e6
 #: Footprints shown.
 FOOTPRINTS = 40
 #: Standing longer than this many stride durations (and 1.5 s) after a contact is not walking.
@@ -49,16 +53,17 @@ class SensorStore:
     def take(self, sample: Sample) -> bool:
         """Keep a sample if it is finite and later than the last one; say whether."""
         force, rate, field = sample.specific_force_b, sample.angular_rate_b, sample.field_b
-        if not math.isfinite(force[0] + force[1] + force[2] + rate[0] + rate[1] + rate[2]):
-            return self._drop("not a number")
+        if not (_plausible(force) and _plausible(rate)):
+            return self._drop("not a finite number")
         if not self.samples.end:
             self._first_ns = sample.device_ns
         elif sample.device_ns <= self._last_ns:
-            return self._drop("repeated time" if sample.device_ns == self._last_ns else "time went back")
+            same = sample.device_ns == self._last_ns
+            return self._drop("repeated time" if same else "time went backward")
         self._last_ns = sample.device_ns
         self.samples.grow(1)
         block, place = self.samples.block(self.samples.end - 1)
-        block[place] = (sample.device_ns - self._first_ns, *force, *rate, *(field or NO_FIELD))
+        block[place] = (sample.device_ns - self._first_ns, *force, *rate, *_field_or_none(field))
         self.clocks.grow(1)
         block, place = self.clocks.block(self.clocks.end - 1)
         block[place] = (sample.host_ns, sample.saturation)
@@ -100,7 +105,12 @@ class SensorStore:
         return low
 
 
-NO_FIELD = (math.nan, math.nan, math.nan)
+def _plausible(vector: Vector) -> bool:
+    return all(abs(x) < MOST for x in vector)  # False for NaN
+
+
+def _field_or_none(field: Vector | None) -> Vector:
+    return field if field is not None and _plausible(field) else NO_FIELD
 
 
 class FootTrack:
