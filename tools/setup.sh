@@ -20,7 +20,7 @@ choose_python() {
 
 # A .venv made elsewhere and moved here, or left by a Python since removed, is of no use.
 usable() {
-    .venv/bin/python -c "$fits" 2>/dev/null && grep -qF "$(pwd)/.venv/bin/" .venv/bin/pip &&
+    .venv/bin/python -c "$fits" 2>/dev/null && grep -qF "$(pwd -P)/.venv/bin/" .venv/bin/pip &&
         { [ -z "${PYTHON:-}" ] || [ "$("$PYTHON" --version 2>/dev/null)" = "$(.venv/bin/python --version)" ]; }
 }
 
