@@ -106,7 +106,7 @@ class SensorStore:
 
 
 def _plausible(vector: Vector) -> bool:
-    return all(abs(x) < MOST for x in vector)  # False for NaN
+    return abs(vector[0]) < MOST and abs(vector[1]) < MOST and abs(vector[2]) < MOST  # False for NaN
 
 
 def _field_or_none(field: Vector | None) -> Vector:

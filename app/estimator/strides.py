@@ -27,6 +27,14 @@ def contact_at(row: Floats, t_s: float) -> Contact:
     return Contact(t_s, (north, east, down), yaw_of(tuple(row[6:10].tolist())))
 
 
+def turned(contact: Contact, angle_rad: float) -> Contact:
+    """The footprint after the whole walk was turned clockwise, seen from above, about its start."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    north, east, down = contact.position_n
+    position_n = (c * north - s * east, s * north + c * east, down)
+    return Contact(contact.t_s, position_n, contact.heading_rad + angle_rad)
+
+
 def stride_between(before: Contact, now: Contact, event: Floats, number: int, lift_m: float) -> Stride:
     """The stride from one footprint to the next; ``event`` is the zero-velocity update that ended it.
 

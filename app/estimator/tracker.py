@@ -12,9 +12,10 @@ from app.estimator import state as s
 from app.estimator.corrections import EVENT_WIDTH, Event, correct
 from app.estimator.gait import SWING
 from app.estimator.papers import Reading, step
+from app.estimator.resume import resume
 from app.estimator.state import Record, State
 from app.estimator.strapdown import bias_of_swing
-from app.estimator.strides import Contact, contact_at, lift_above_line, stride_between
+from app.estimator.strides import Contact, contact_at, lift_above_line, stride_between, turned
 from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples, Stride
 from app.settings import Settings
 
@@ -71,6 +72,7 @@ class Checkpoint(NamedTuple):
     state: Record
     strides: int
     distance_m: float
+    contact: Contact | None  # the last footprint of this segment
 
 
 class Tracker:
@@ -83,15 +85,16 @@ class Tracker:
     def __init__(self, settings: Settings, start: int = 0, base: Checkpoint | None = None) -> None:
         """Begin at row ``start`` (a multiple of ``BLOCK``), from another tracker's checkpoint there."""
         self.settings = settings
-        self._base = base or Checkpoint(s.new_state(settings), 0, 0.0)
+        self._base = base or Checkpoint(s.new_state(settings), 0, 0.0, None)
         self.state = self._base.state.copy()
-        s.set_parameters(self.state, settings)
+        contact, turn_rad = self._base.contact, settings.start_heading_rad - float(self.state["north_rad"][0])
+        self._contact = contact and turned(contact, turn_rad)  # the last footprint of this segment
+        resume(self.state, settings)
         self.rows = Blocks(ROW_WIDTH, start)
         self.strides: list[Stride] = []
         self.distance_m = self._base.distance_m
         self.segments: list[int] = []  # rows where a segment begins, but for the first
         self.checkpoints: dict[int, Checkpoint] = {}  # before each block's first row
-        self._contact: Contact | None = None  # the last footprint of this segment
         self._events = np.zeros((EVENTS, EVENT_WIDTH))
 
     @property
@@ -117,7 +120,7 @@ class Tracker:
             block, place = samples.block(self.rows.end)
             if place == 0:
                 self.checkpoints[self.rows.end] = Checkpoint(
-                    self.state.copy(), self.stride_count, self.distance_m
+                    self.state.copy(), self.stride_count, self.distance_m, self._contact
                 )
             self._advance_in(samples, block, place, min(samples.end - self.rows.end, BLOCK - place))
 
@@ -152,7 +155,9 @@ class Tracker:
     def _add_stride(self, event: Floats) -> None:
         lift, contact = max(int(event[Event.LIFT_ROW]), self.rows.start), int(event[Event.CONTACT_ROW])
         lifts = [lift_above_line(rows, event) for rows, _ in self.rows.pieces(lift, contact + 1)]
-        before = self._contact or contact_at(self._row(lift), event[Event.LIFT_NS] * 1e-9)
+        start_n = (event[Event.START], event[Event.START + 1], event[Event.START + 2])  # the row may be gone
+        lifted = contact_at(self._row(lift), event[Event.LIFT_NS] * 1e-9)._replace(position_n=start_n)
+        before = self._contact or lifted
         self._contact = contact_at(self._row(contact), event[Event.LIFT_NS] * 1e-9 + event[Event.SWING_S])
         stride = stride_between(before, self._contact, event, self.stride_count + 1, max(lifts))
         self.strides.append(stride)
