@@ -25,13 +25,13 @@ def parse_axes(text: str) -> Axes:
     """
     parts = [part.strip().lower() for part in text.split(",")]
     if len(parts) != 3 or any(part.lstrip("+-") not in ("x", "y", "z") or len(part) > 2 for part in parts):
-        raise InputError(f"axes={text}: expected three sensor axes for toe,right,down such as x,-y,-z")
+        raise InputError(f"axes={text!r}: expected three sensor axes for toe,right,down such as x,-y,-z")
     toe, right, down = ((_LETTERS.index(part[-1]), -1 if part[0] == "-" else 1) for part in parts)
     axes = (toe, right, down)
     if len({index for index, _ in axes}) < 3:
-        raise InputError(f"axes={text}: an axis is named twice, expected each of x, y, z once")
+        raise InputError(f"axes={text!r}: an axis is named twice, expected each of x, y, z once")
     if np.linalg.det(rotation(axes)) < 0:
-        raise InputError(f"axes={text}: a mirror image, expected a right-handed frame: change one sign")
+        raise InputError(f"axes={text!r}: a mirror image, expected a right-handed frame: change one sign")
     return axes
 
 

@@ -46,13 +46,13 @@ def _rate(text: str) -> float:
     except ValueError:
         rate_hz = math.nan
     if not 1.0 <= rate_hz <= 100_000.0:
-        raise InputError(f"rate={text}: expected samples a second, 1 to 100000")
+        raise InputError(f"rate={text!r}: expected samples a second, 1 to 100000")
     return rate_hz
 
 
 def _one_of(key: str, text: str, choices: tuple[str, ...]) -> str:
     if text not in choices:
-        raise InputError(f"{key}={text}: expected one of {', '.join(choices)}")
+        raise InputError(f"{key}={text!r}: expected one of {', '.join(choices)}")
     return text
 
 

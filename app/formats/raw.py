@@ -47,7 +47,7 @@ class Parsed:
 def even_stamps(index: Floats | Ints, rate_hz: float) -> Ints:
     """Stamps of rows ``index`` [n] at an even rate, ns, each rounded once; NO_STAMP where not finite."""
     with np.errstate(all="ignore"):
-        return whole_ns(np.asarray(index, np.float64) * (1e9 / rate_hz))
+        return whole_ns(np.asarray(index, np.float64) * 1e9 / rate_hz)
 
 
 def whole_ns(stamps: Floats) -> Ints:

@@ -18,23 +18,31 @@ def load(path: str | Path, options: Mapping[str, str] | None = None) -> Recordin
     Raises ``InputError``, one line, if there is no such file or it is no recording.
     """
     told = parse_options(options or {})
-    file = Path(path).expanduser()
-    return read(file.name, _bytes(file), told)
+    try:
+        file = Path(path).expanduser()
+    except RuntimeError:  # ~nobody
+        raise InputError(f"{printable(str(path))}: no such user, expected a recording") from None
+    return read(printable(file.name), _bytes(file, printable(str(file))), told)
 
 
-def _bytes(file: Path) -> bytes:
+def printable(name: str) -> str:
+    """A name for a message of one line: a file may be called anything, line ends too."""
+    return "".join(character if character.isprintable() else "?" for character in name)
+
+
+def _bytes(file: Path, shown: str) -> bytes:
     try:
         if file.is_dir():
-            raise InputError(f"{file}: a folder, expected a recording")
+            raise InputError(f"{shown}: a folder, expected a recording")
         if not file.is_file():
             what = "not a regular file" if file.exists() else "no such file"
-            raise InputError(f"{file}: {what}, expected a recording")
+            raise InputError(f"{shown}: {what}, expected a recording")
         size = file.stat().st_size
         if size > MOST_BYTES:
-            raise InputError(f"{file}: {size / 1e9:.1f} GB, expected at most {MOST_BYTES / 1e9:g} GB")
+            raise InputError(f"{shown}: {size / 1e9:.1f} GB, expected at most {MOST_BYTES / 1e9:g} GB")
         return file.read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a NUL in the name
         if isinstance(error, InputError):
             raise
         reason = error.strerror if isinstance(error, OSError) and error.strerror else str(error)
-        raise InputError(f"{file}: cannot be read ({reason}), expected a recording") from None
+        raise InputError(f"{shown}: cannot be read ({reason}), expected a recording") from None

@@ -45,7 +45,9 @@ def parse_spec(text: str) -> Spec:
     """The SPEC as typed; ``InputError`` names what is wrong: form, option or number."""
     kind, rest = _kind(text)
     if kind in _LATER:
-        raise InputError(f"{text}: {kind}: sources are not in this version, expected a recording or sim:walk")
+        raise InputError(
+            f"{text!r}: {kind}: sources are not in this version, expected a recording or sim:walk"
+        )
     target, _, query = rest.partition("?")
     if not target:
         raise InputError(
@@ -71,7 +73,7 @@ def parse_speed(text: str) -> float:
     except ValueError:
         speed = math.nan
     if speed != 0.0 and not SLOWEST <= speed <= FASTEST:
-        raise InputError(f"speed={text}: expected {SLOWEST:g} to {FASTEST:g}, or 0 for as fast as possible")
+        raise InputError(f"speed={text!r}: expected {SLOWEST:g} to {FASTEST:g}, or 0 for as fast as possible")
     return speed
 
 
@@ -86,9 +88,9 @@ def _options(text: str, query: str) -> dict[str, str]:
     for part in query.split("&") if query else ():
         key, equals, value = part.partition("=")
         if not key or not equals:
-            raise InputError(f"{text}: option {part!r}, expected key=value")
+            raise InputError(f"{text!r}: option {part!r}, expected key=value")
         if key in options:
-            raise InputError(f"{text}: option {key!r} is given twice, expected once")
+            raise InputError(f"{text!r}: option {key!r} is given twice, expected once")
         options[key] = unquote(value)
     return options
 
@@ -96,10 +98,12 @@ def _options(text: str, query: str) -> dict[str, str]:
 def _check_keys(text: str, options: Mapping[str, str]) -> None:
     for key in options:
         if key not in KEYS:
-            raise InputError(f"{text}: unknown option {key!r}, expected one of {', '.join((*_PACE, *KEYS))}")
+            raise InputError(
+                f"{text!r}: unknown option {key!r}, expected one of {', '.join((*_PACE, *KEYS))}"
+            )
 
 
 def _loop(text: str) -> bool:
     if text.lower() not in _TRUE:
-        raise InputError(f"loop={text}: expected 1 or 0")
+        raise InputError(f"loop={text!r}: expected 1 or 0")
     return _TRUE[text.lower()]

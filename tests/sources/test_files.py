@@ -30,6 +30,8 @@ def test_no_file_a_folder_a_bad_name(tmp_path: Path) -> None:
         (tmp_path / "a\0b", "no such file|cannot be read"),
         ("x" * 5000, "cannot be read|no such file"),
         ("/dev/null", "not a regular file"),
+        ("two\nlines.csv", r"two\?lines.csv: no such file"),
+        ("~nobody-at-all/walk.csv", "no such"),
     ):
         with pytest.raises(InputError, match=words) as error:
             load(path)
@@ -51,5 +53,5 @@ def test_a_file_that_is_too_large(walk: Path, monkeypatch) -> None:
 
 
 def test_options_are_checked_before_the_file(walk: Path) -> None:
-    with pytest.raises(InputError, match="rate=fast"):
+    with pytest.raises(InputError, match="rate='fast'"):
         load(walk, {"rate": "fast"})
