@@ -57,7 +57,7 @@ def read(name: str, data: bytes, options: Options | None = None) -> Recording:
 
 def _parse(name: str, data: bytes, rate_hz: float | None) -> Parsed:
     """The parser's view of the file that the first bytes or the header call for."""
-    if not data.strip():
+    if not data or data.isspace():
         raise InputError(f"{name}: an empty file, {EXPECTED}")
     for magic, what in _FOREIGN.items():
         if data.startswith(magic):

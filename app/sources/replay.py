@@ -88,6 +88,7 @@ class Replay:
         self._clock = clock or HostClock()
         self._timeline = Timeline(recording)
         self._next = 0  # the first sample not yet released
+        self._begun = False  # the playhead waits for the reader
         self._restart = False
         self._jump: tuple[int, int] | None = None  # release up to this sample at once; the playhead then
         self._anchor = (self._clock.now_ns(), 0)  # host time, playhead
@@ -126,6 +127,7 @@ class Replay:
 
     async def _play(self) -> AsyncIterator[Sample | RestartHere]:
         self._move_anchor(self._playhead_ns())
+        self._begun = True
         breath_ns = self._clock.now_ns()
         while True:
             self._news.clear()
@@ -157,7 +159,7 @@ class Replay:
         if self._jump:
             return self._jump[1]
         host_ns, position_ns = self._anchor
-        if not self.paused and self.speed > 0.0:
+        if self._begun and not self.paused and self.speed > 0.0:
             position_ns += int((self._clock.now_ns() - host_ns) * self.speed)
         elif not self.paused and self._next:
             position_ns = max(position_ns, self._timeline.elapsed_ns(self._next - 1))

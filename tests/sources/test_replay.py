@@ -82,6 +82,15 @@ def test_a_gap_is_waited_for(recording_of, clock) -> None:
     assert clock.ns - start == pytest.approx(10.01e9, abs=6e6)
 
 
+def test_the_playhead_waits_for_the_reader(recording_of, clock) -> None:
+    replay = Replay(recording_of(HUNDRED_HZ), finish=True, clock=clock)
+    clock.ns += 5 * 10**9
+    assert replay.position_s == 0.0
+    start = clock.ns
+    assert len(asyncio.run(everything(replay))) == 200
+    assert clock.ns - start == pytest.approx(1.99e9, abs=6e6)
+
+
 def test_a_pause_holds_and_goes_on_where_it_was(recording_of, clock) -> None:
     async def test() -> None:
         replay = Replay(recording_of(HUNDRED_HZ), clock=clock)
