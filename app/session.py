@@ -44,6 +44,7 @@ class Session:
         self.number = 0
         self.epoch = 0
         self.wanted: Reestimation | None = None
+        self._next: Reestimation | None = None  # a candidate moved while an apply was under way
         self.changes: list[m.Change] = []
         self.log: list[tuple[int, m.Order]] = []  # orders, each with the number it was taken under
         self.stores: dict[str, SensorStore] = {}
@@ -58,7 +59,7 @@ class Session:
         self._slot_now: str | None = None
         self._jobs = 0
         self._frozen: dict[str, TrailBuilder] = {}  # the trail of samples that are gone
-        self._truth_trails: dict[str, tuple[Settings, int, TrailBuilder]] = {}
+        self._truth_trails: dict[str, tuple[tuple[float, bool], int, TrailBuilder]] = {}
 
     # --- in ----------------------------------------------------------------------------------------
 
@@ -94,21 +95,19 @@ class Session:
             case m.ReplaceCandidate(settings, reason):
                 self._want(order, settings, self._apply_at_once, reason)
             case m.ApplyCandidate():
-                if self.wanted is not None:
-                    self.wanted = replace(self.wanted, apply=True, who=order.who, host_ns=order.host_ns)
-                elif self.candidate is not None:
-                    self._make_main(self.candidate, order.who, order.host_ns, "applied")
+                self._apply_candidate(order)
             case m.DropCandidate():
-                self.wanted, self.candidate = None, None
+                self.wanted, self._next, self.candidate = self._coming, None, None
             case m.Undo():
-                if self._undo:
-                    self._want(order, self._undo.pop(), True, "undo")
+                self._undo_last(order)
             case m.SetApplyAtOnce(on):
                 self._apply_at_once = on
                 if on and self.candidate_settings != self.main.settings:
                     self._apply(order, m.ApplyCandidate())
-            case m.KeepAs(slot) if slot in ("A", "B"):
-                self._slots[slot], self._slot_now = self.main.settings, slot
+            case m.KeepAs(slot):
+                if slot not in ("A", "B"):
+                    raise m.InputError(f"keep as {slot!r}: expected A or B")
+                self._slots[slot], self._slot_now = (self._coming or self.main).settings, slot
             case m.SwapAB():
                 other = "A" if self._slot_now == "B" else "B"
                 if other in self._slots:
@@ -124,69 +123,116 @@ class Session:
     @property
     def candidate_settings(self) -> Settings:
         """What the sliders show: the wanted, else the candidate's, else the main track's settings."""
-        if self.wanted is not None:
-            return self.wanted.settings
-        return (self.candidate or self.main).settings
+        return (self._next or self.wanted or self.candidate or self.main).settings
+
+    @property
+    def _coming(self) -> Reestimation | None:
+        """An apply whose track is not there yet: in the order of the log it has happened already."""
+        return self.wanted if self.wanted is not None and self.wanted.apply else None
 
     def adopt(self, job: Reestimation, track: Track) -> None:
         """Bring back the result of ``wanted``; one that is no longer wanted is let go."""
         if self.wanted is None or job.number != self.wanted.number:
             return
-        wanted, self.wanted = self.wanted, None
+        wanted = self.wanted
+        if any(
+            foot.tracker.rows.end < self.stores[sensor].samples.start for sensor, foot in track.feet.items()
+        ):
+            self.wanted = self._fresh(wanted)  # the store has moved past it
+            return
+        self.wanted = None
+        bases = self.main.bases()
         for sensor, store in self.stores.items():
-            if sensor in track.feet and track.feet[sensor].tracker.rows.end < store.samples.start:
-                return  # the store has moved past it
-            track.advance(sensor, store.samples, self.main.bases().get(sensor))
+            if store.samples:
+                track.drop_before(sensor, store.samples.start)
+                track.advance(sensor, store.samples, bases.get(sensor))
         if wanted.apply:
-            self._make_main(track, wanted.who, wanted.host_ns, wanted.reason)
+            self._make_main(track, wanted)
         else:
             self.candidate = track
+        if self._next is not None:
+            self.wanted, self._next = self._fresh(self._next), None
 
     # --- inside ------------------------------------------------------------------------------------
 
     def _want(self, order: m.Order, settings: Settings, apply: bool, reason: str) -> None:
-        if settings == self.main.settings:
-            self.wanted, self.candidate = None, None
+        coming = self._coming
+        if settings == self.main.settings and (apply or coming is None):
+            self.wanted, self._next, self.candidate = None, None, None
             return
-        self._jobs += 1
-        stores = {sensor: store.samples.share() for sensor, store in self.stores.items()}
-        self.wanted = Reestimation(
-            self._jobs, settings, stores, self.main.bases(), apply, order.who, reason, order.host_ns
-        )
+        job = Reestimation(0, settings, {}, {}, apply, order.who, reason, order.host_ns, self.number)
+        if coming is None or apply:
+            self.wanted, self._next = self._fresh(job), None
+        else:
+            self._next = job if settings != coming.settings else None
 
-    def _make_main(self, track: Track, who: str, host_ns: int, reason: str) -> None:
-        if reason != "undo":
+    def _fresh(self, job: Reestimation) -> Reestimation:
+        """The same job, for the samples that are here now."""
+        self._jobs += 1
+        stores = {sensor: store.samples.share() for sensor, store in self.stores.items() if store.samples}
+        return replace(job, number=self._jobs, stores=stores, bases=self.main.bases())
+
+    def _apply_candidate(self, order: m.Order) -> None:
+        why = Reestimation(
+            0, self.candidate_settings, {}, {}, True, order.who, "applied", order.host_ns, self.number
+        )
+        if self._next is not None:
+            self.wanted, self._next = self._fresh(why), None
+        elif self.wanted is not None and not self.wanted.apply:
+            w = self.wanted
+            self.wanted = replace(why, number=w.number, stores=w.stores, bases=w.bases)
+        elif self.wanted is None and self.candidate is not None:
+            self._make_main(self.candidate, why)
+
+    def _undo_last(self, order: m.Order) -> None:
+        if self._coming is not None and self._coming.reason != "undo":
+            self.wanted, self._next, self.candidate = None, None, None
+        elif self._undo:
+            self._want(order, self._undo.pop(), True, "undo")
+
+    def _make_main(self, track: Track, why: Reestimation) -> None:
+        if why.reason != "undo":
             self._undo.append(self.main.settings)
-        what = f"{reason}: {self.main.settings.differences(track.settings)}"
-        self._note(who, host_ns, what)
+        what = f"{why.reason}: {self.main.settings.differences(track.settings)}"
+        self._note(m.Change(why.taken, why.host_ns, why.who, what))
+        turn_rad = track.settings.start_heading_rad - self.main.settings.start_heading_rad
         for sensor, frozen in self._frozen.items():
+            if turn_rad:
+                frozen.turn(f"frozen{self.epoch}t{self._jobs}.{sensor}", turn_rad)
             track.feet[sensor].builder.seed(frozen.finished())
         if self._slot_now in self._slots and self._slots[self._slot_now] != track.settings:
             self._slot_now = None
         self.main, self.candidate = track, None
 
-    def _note(self, who: str, host_ns: int, what: str) -> None:
-        self.changes.append(m.Change(self.number, host_ns, who, what))
+    def _note(self, change: m.Change) -> None:
+        self.changes.append(change)
         del self.changes[:-CHANGES]
 
     def _reset_heading(self, order: m.Order) -> None:
+        settings = (self._coming or self.main).settings
         for foot in self.main.feet.values():
             block, place = foot.tracker.rows.block(foot.tracker.rows.end - 1)
             yaw = yaw_of(tuple(block[place, m.ATTITUDE].tolist()))
             heading = math.remainder(self.main.settings.start_heading_rad - yaw, math.tau)
-            changed = self.main.settings.with_changes({"start_heading_rad": heading})
+            changed = settings.with_changes({"start_heading_rad": heading})
             self._want(order, changed, True, "heading reset")
             return
 
     def _restart(self, order: m.Order) -> None:
-        self._note(order.who, order.host_ns, "restarted here")
+        coming, shown = self._coming, self.candidate_settings
+        self._note(m.Change(self.number, order.host_ns, order.who, "restarted here"))
         self.epoch += 1
         self.stores, self._frozen, self._truth_trails = {}, {}, {}
-        self.wanted, self.candidate = None, None
+        self.wanted, self._next, self.candidate = None, None, None
         self.main = Track(f"main{self.epoch}", self.main.settings)
+        if coming is not None:
+            self._make_main(Track(f"main{self.epoch}", coming.settings), coming)
+        if shown != self.main.settings:  # the sliders stay where they are
+            self.candidate = Track(f"candidate{self.epoch}", shown)
 
     def _keep_budget(self) -> None:
-        while self.stored_bytes > self._budget:
+        """Let old blocks go; a candidate's place is kept free, so that what goes depends on samples only."""
+        while self.stored_bytes + (0 if self.candidate else self.main.nbytes) > self._budget:
             sensor, store = max(self.stores.items(), key=lambda item: len(item[1].samples))
             if len(store.samples) <= 2 * BLOCK:
                 return
@@ -277,11 +323,13 @@ class Session:
         return positions
 
     def _truth_trail(self, sensor: str, store: SensorStore) -> m.Trail:
-        settings, done, builder = self._truth_trails.get(sensor, (None, 0, None))
-        if builder is None or settings != self.main.settings:
+        settings = self.main.settings
+        turned = (settings.start_heading_rad, settings.magnetometer)
+        was, done, builder = self._truth_trails.get(sensor, (None, 0, None))
+        if builder is None or was != turned:
             done, builder = 0, TrailBuilder(f"truth{self.number}.{sensor}")
         end = int(store.elapsed_s * TRUTH_HZ)
         if end > done:
             builder.add(self._true_positions(sensor, np.arange(done, end) / TRUTH_HZ))
-        self._truth_trails[sensor] = (self.main.settings, end, builder)
+        self._truth_trails[sensor] = (turned, end, builder)
         return builder.trail(np.empty((0, 3)))

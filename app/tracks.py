@@ -207,6 +207,12 @@ class Track:
             foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, base)
         foot.advance(store)
 
+    def drop_before(self, sensor: str, row: int) -> None:
+        """Let a sensor's rows before ``row`` go, as its samples have gone."""
+        tracker = self.feet[sensor].tracker if sensor in self.feet else None
+        while tracker is not None and tracker.rows.start < row:
+            tracker.drop_oldest()
+
     def bases(self) -> dict[str, Checkpoint]:
         """For each sensor, the checkpoint at the oldest sample still here."""
         trackers = ((sensor, foot.tracker) for sensor, foot in self.feet.items())
@@ -235,6 +241,7 @@ class Reestimation:
     who: str
     reason: str
     host_ns: int
+    taken: int  # samples and orders taken when it was asked for
 
     def run(self) -> Track:
         """The new track over all samples that were there when the work was given out."""

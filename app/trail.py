@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -69,6 +70,13 @@ def segments_of(points: Floats) -> Segments:
     return np.stack([points[:-1], points[1:]], axis=1).astype(np.float32) if len(points) > 1 else EMPTY
 
 
+def _turned(points: Any, angle_rad: float) -> Any:
+    """Points [..., 3] of any float type, turned about down."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return (points @ turn.T).astype(points.dtype)
+
+
 class TrailBuilder:
     """Takes settled rows in order and hands out pieces."""
 
@@ -100,6 +108,17 @@ class TrailBuilder:
     def seed(self, pieces: tuple[TrailPiece, ...]) -> None:
         """Put older pieces, of another builder, in front."""
         self._levels[-1] = [*pieces, *self._levels[-1]]
+
+    def turn(self, name: str, angle_rad: float) -> None:
+        """Turn all of it clockwise, seen from above, about the start; its pieces get new keys."""
+        self._name = name
+        self._levels = [
+            [TrailPiece(f"{name}/{p.key}", _turned(p.segments, angle_rad)) for p in level]
+            for level in self._levels
+        ]
+        self._growing, self._shown = _turned(self._growing, angle_rad), EMPTY
+        if self._last is not None:
+            self._last = _turned(self._last, angle_rad)
 
     def finished(self) -> tuple[TrailPiece, ...]:
         """All of it as settled pieces, the growing one too."""
