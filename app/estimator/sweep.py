@@ -17,7 +17,9 @@ from app.estimator import state as s
 from app.estimator.attitude import share_of
 from app.estimator.gait import STANCE
 from app.estimator.papers import Reading, aid, leave_segment, level, navigate, observe
+from app.estimator.resume import resume
 from app.estimator.state import NAV, Record
+from app.estimator.tracker import Checkpoint
 from app.motion import Floats, Sweep
 from app.settings import Settings
 
@@ -69,12 +71,15 @@ def sweep(
     gains_stance: Floats = GAINS_STANCE,
     gains_swing: Floats = GAINS_SWING,
     progress: Callable[[float], bool] = lambda done: True,
+    base: Checkpoint | None = None,
 ) -> Floats:
     """Horizontal distance from start to end, m [a, b], for every k_s [a] and k_d [b].
 
+    Where the oldest samples are gone, ``base`` is a tracker's checkpoint at the oldest still here.
     ``progress`` is told how much is done, 0…1, and returns False to give up (then ``InterruptedError``).
     """
-    state = s.new_state(settings)
+    state = s.new_state(settings) if base is None else base.state.copy()
+    resume(state, settings)
     navs = np.zeros(len(gains_stance) * len(gains_swing), NAV)
     for name in NAV.names or ():
         navs[name] = state[name]
