@@ -23,7 +23,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Exit 2 with one line."""
-        self.exit(2, f"{self.prog}: {message} (see {self.prog} --help)\n")
+        self.exit(2, f"{self.prog}: {' '.join(message.split())} (see {self.prog} --help)\n")
 
 
 def parser() -> Parser:
@@ -64,19 +64,26 @@ def _add_settings(command: argparse.ArgumentParser) -> None:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command. Exit code 0: done; 2: the user's input is wrong, said in one line."""
+    level = os.environ.get("STRIDESCOPE_LOG", "WARNING").upper()
     logging.basicConfig(
-        level=os.environ.get("STRIDESCOPE_LOG", "WARNING"), format="%(levelname)s %(name)s: %(message)s"
+        level=level if level in logging.getLevelNamesMapping() else "WARNING",
+        format="%(levelname)s %(name)s: %(message)s",
     )
     argv = list(sys.argv[1:] if arguments is None else arguments)
     if not argv or (argv[0].startswith("-") and argv[0] not in ("-h", "--help", "--version")):
         argv.insert(0, "walk")
     options = parser().parse_args(argv)
     try:
-        return run_walk(options) if options.command == "walk" else run_process(options)
+        code = run_walk(options) if options.command == "walk" else run_process(options)
+        sys.stdout.flush()
+        return code
     except InputError as error:
         print(f"stridescope: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
+        return 0
+    except BrokenPipeError:  # the reader of our output has gone (a pipe into head); nothing is wrong
+        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  (Python flushes it at exit)
         return 0
 
 

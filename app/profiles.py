@@ -47,17 +47,28 @@ def load(name: str) -> Settings:
     return read(path)
 
 
+def load_named(name: str) -> Settings:
+    """A profile by its name only, for whom no other file is meant to be read: a browser."""
+    if name not in BUILT_IN and not NAME.fullmatch(name):
+        raise InputError(f"profile name {name!r}: expected one of {', '.join(names())}")
+    return load(name)
+
+
 def read(path: Path) -> Settings:
     """The settings of a TOML file; what it leaves out is as in ``papers``."""
     try:
+        if path.exists() and not path.is_file():
+            raise InputError(f"profile {path}: not a file, expected a TOML file of settings")
         if path.stat().st_size > MOST_BYTES:
             raise InputError(f"profile {path}: {path.stat().st_size} bytes, expected a TOML file of settings")
-        values = tomllib.loads(path.read_text("utf-8"))
+        text = path.read_text("utf-8")
     except FileNotFoundError:
         raise InputError(f"profile {path}: no such file") from None
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"profile {path}: cannot be read: {_reason(error)}") from None
-    except tomllib.TOMLDecodeError as error:
+    try:
+        values = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:  # also a number of thousands of digits, a deep nest
         raise InputError(f"profile {path}: not TOML: {error}") from None
     try:
         return BUILT_IN["papers"].with_changes(values)

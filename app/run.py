@@ -154,7 +154,7 @@ class Viewer:
                 case m.FindGains():
                     self._find_gains(order)
                 case m.LoadProfile(name):
-                    wanted = m.ReplaceCandidate(profiles.load(name), f"profile {name}")
+                    wanted = m.ReplaceCandidate(profiles.load_named(name), f"profile {name}")
                     self._session.apply(replace_command(order, wanted))
                 case m.SaveProfile(name):
                     profiles.save(name, self._session.main.settings)
@@ -195,6 +195,7 @@ class Viewer:
         loop = asyncio.get_running_loop()
         settings, epoch = self._session.main.settings, self._session.epoch
         stores = [store.samples.share() for store in self._session.stores.values()]
+        bases = [self._session.main.bases().get(sensor) for sensor in self._session.stores]
         halves = np.array_split(gains.GAINS_STANCE, 2)  # two cores; each sees the whole walk
         done = np.zeros((len(stores), len(halves)))
 
@@ -205,7 +206,7 @@ class Viewer:
                 loop.call_soon_threadsafe(self._tell_progress, total)
                 return not self._give_up
 
-            return gains.sweep(stores[i], settings, halves[k], progress=progress)
+            return gains.sweep(stores[i], settings, halves[k], progress=progress, base=bases[i])
 
         jobs = [
             [loop.run_in_executor(self._workers, closures, i, k) for k in range(len(halves))]

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, fields, replace
 from typing import Any
 
 Value = float | bool | str
+_TOO_LARGE = 1e300  # a whole number can be past every float
 
 
 @dataclass(frozen=True)
@@ -38,7 +39,7 @@ def _checked(name: str, value: object, default: object, limit: Limit) -> Value:
         if value not in limit.choices:
             raise ValueError(f"{name} = {value!r}: expected one of {', '.join(limit.choices)}")
         return str(value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _TOO_LARGE:
         raise ValueError(f"{name} = {value!r}: expected a number")
     if not limit.low <= value <= limit.high:
         span = f"{limit.low:g} to {limit.high:g} {limit.unit}".rstrip()
