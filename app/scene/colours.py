@@ -60,11 +60,6 @@ def blend(one: Rgb, other: Rgb, part: float) -> Rgb:
     return _rgb(np.array(one) * (1.0 - part) + np.array(other) * part)
 
 
-def linear(colour: Rgb) -> Rgb:
-    """The same colour for viser's batched meshes, which take it for linear light and brighten it."""
-    return _rgb(255.0 * (np.array(colour) / 255.0) ** 2.2)
-
-
 def css(colour: Rgb, alpha: float = 1.0) -> str:
     """As a style sheet writes it."""
     return f"rgba({colour[0]},{colour[1]},{colour[2]},{alpha:g})"

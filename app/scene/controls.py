@@ -45,6 +45,19 @@ class Input:
         self._ours = handle.update_timestamp
 
 
+class Html:
+    """A piece of HTML that is sent only when it changed."""
+
+    def __init__(self, gui: viser.GuiApi) -> None:
+        self._handle = gui.add_html("")
+        self._text = ""
+
+    def show(self, text: str) -> None:
+        """Make it read so."""
+        if text != self._text:
+            self._handle.content = self._text = text
+
+
 class Controls:
     """Makes inputs and keeps their rules."""
 
@@ -56,6 +69,10 @@ class Controls:
     def rules(self) -> Mapping[str, GuiRule]:
         """uuid → what a browser may write; a new mapping at each change, so any thread may read it."""
         return self._rules
+
+    def html(self) -> Html:
+        """A piece of the panel that is no input."""
+        return Html(self.gui)
 
     def button(self, label: str, ask: Callable[[], Command | None], **look: Any) -> Input:
         """A push button; ``ask`` gives the command, or does a thing of the page's own."""
@@ -90,7 +107,7 @@ class Controls:
         return self._wire(handle, rule, lambda value: ask(str(value)[:longest]), handle.on_update)
 
     def dropdown(
-        self, label: str, options: Sequence[str], ask: Callable[[str], Command | None], hint: str | None = None
+        self, label: str, options: Sequence[str], ask: Callable[[str], Command | None], hint: str | None
     ) -> Input:
         """A list to choose from; ``offer`` changes what it holds."""
         handle = self.gui.add_dropdown(label, tuple(options), hint=hint)

@@ -16,6 +16,7 @@ LINKS = {
     Link.WAITING: "waiting for samples", Link.LIVE: "live", Link.PAUSED: "paused", Link.ENDED: "ended",
     Link.LOST: "connection lost",
 }  # fmt: skip
+UNLINKED = '<div class="ss-note">Feet not linked: each has its own origin and start heading.</div>'
 
 
 def is_stale(status: Status) -> bool:
@@ -27,7 +28,8 @@ def header(status: Status) -> str:
     """Source, its state, and the big sign when data stopped."""
     name = words.plain(status.source.name, 60)
     link = f'<span class="ss-link ss-{status.link.value}">{LINKS[status.link]}</span>'
-    stale = f'<div class="ss-stale">STALE <b>{words.number(status.stale_s, 1)} s</b></div>' if is_stale(status) else ""
+    age = words.number(status.stale_s, 1)
+    stale = f'<div class="ss-stale">STALE <b>{age} s</b></div>' if is_stale(status) else ""
     return f'<div class="ss-head"><span class="ss-source">{name}</span>{link}</div>{stale}'
 
 
@@ -45,14 +47,13 @@ def message(snapshot: Snapshot, status: Status) -> str:
 def feet(snapshot: Snapshot) -> str:
     """A card per foot."""
     cards = "".join(_card(foot) for foot in snapshot.main.feet)
-    linked = len(snapshot.main.feet) > 1
-    note = '<div class="ss-note">Feet not linked: each has its own origin and start heading.</div>' if linked else ""
+    note = UNLINKED if len(snapshot.main.feet) > 1 else ""
     return cards + note + legend(snapshot) if cards else '<div class="ss-note">No foot yet.</div>'
 
 
 def legend(snapshot: Snapshot) -> str:
     """Which line is which."""
-    lines = [("walk", "walk"), ("newest", "newest stride, not yet corrected")]
+    lines = [("walk", "walk"), ("newest", "newest stride, provisional")]
     lines += [("candidate", "candidate")] if snapshot.candidate else []
     lines += [("truth", "truth")] if snapshot.truth else []
     keys = "".join(f'<span><i class="ss-{name}"></i>{label}</span>' for name, label in lines)
@@ -61,7 +62,7 @@ def legend(snapshot: Snapshot) -> str:
 
 def _card(foot: FootView) -> str:
     error = foot.error_m
-    last = ("Error to truth", *words.metres(error)) if error is not None else ("Walked", words.clock(foot.t_s), "")
+    known = ("Error to truth", *words.metres(error)) if error is not None else None
     tiles = [
         ("Strides", f"{foot.strides}", ""),
         ("Distance", *words.metres(foot.distance_m)),
@@ -70,7 +71,7 @@ def _card(foot: FootView) -> str:
         ("Height", words.number(foot.height_m), "m"),
         ("To start", *words.metres(foot.to_start_m)),
         ("of distance", words.percent(foot.to_start_m, foot.distance_m), ""),
-        last,
+        known or ("Walked", words.clock(foot.t_s), ""),
     ]
     grid = "".join(_tile(*tile) for tile in tiles)
     return (
@@ -105,7 +106,8 @@ def source(snapshot: Snapshot, status: Status) -> str:
         rows.append((words.plain(sensor, 40), _health(health.rate_hz, health.taken, health.segments)))
         rows.append(("· dropped", words.counts(dict(health.dropped))))
         rows.append(("· saturated", f"{health.saturated} samples"))
-    rows.append(("Memory", f"{words.megabytes(snapshot.stored_bytes)} of {words.megabytes(snapshot.budget_bytes)}"))
+    stored, budget = words.megabytes(snapshot.stored_bytes), words.megabytes(snapshot.budget_bytes)
+    rows.append(("Memory", f"{stored} of {budget}"))
     rows.append(("Hindsight from", words.clock(snapshot.hindsight_from_s)))
     rows.append(("Frame", _frame(snapshot)))
     body = "".join(f"<tr><th>{name}</th><td>{value}</td></tr>" for name, value in rows)
@@ -163,7 +165,8 @@ def _undo(depth: int) -> str:
 def differences(one: Settings, other: Settings) -> str:
     """What differs, by symbol and unit: ``k_s 1.05 → 1.6 1/s``."""
     names = [f.name for f in fields(Settings) if getattr(one, f.name) != getattr(other, f.name)]
-    return ", ".join(_difference(LIMITS[n], getattr(one, n), getattr(other, n)) for n in names) or "same settings"
+    told = [_difference(LIMITS[n], getattr(one, n), getattr(other, n)) for n in names]
+    return ", ".join(told) or "same settings"
 
 
 def _difference(limit: Limit, before: Value, after: Value) -> str:
@@ -181,15 +184,14 @@ def comparison(snapshot: Snapshot) -> str:
         waiting = "re-estimating…" if snapshot.pending else "No candidate: move a slider to make one."
         return f'<div class="ss-note">{waiting}</div>'
     mains = {f.sensor: f for f in snapshot.main.feet}
-    body = "".join(
-        _compared(mains[f.sensor], f, len(mains) > 1) for f in snapshot.candidate.feet if f.sensor in mains
-    )
+    both = [(mains[f.sensor], f) for f in snapshot.candidate.feet if f.sensor in mains]
+    body = "".join(_compared(main, other, len(mains) > 1) for main, other in both)
     what = words.plain(differences(snapshot.main.settings, snapshot.candidate.settings), 200)
     pending = '<span class="ss-pending">re-estimating…</span>' if snapshot.pending else ""
     return (
         '<div class="ss-candidate"><div class="ss-card-head"><span class="ss-dot"></span>Candidate'
-        f'{pending}</div><div class="ss-what">{what}</div><table class="ss-compare"><tr><td></td><th>main</th>'
-        f"<th>candidate</th><th>change</th></tr>{body}</table></div>"
+        f'{pending}</div><div class="ss-what">{what}</div><table class="ss-compare">'
+        f"<tr><td></td><th>main</th><th>candidate</th><th>change</th></tr>{body}</table></div>"
     )
 
 

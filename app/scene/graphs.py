@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -71,25 +72,25 @@ class Graphs:
         roles = [f.role for f in feet]
         with self._container:
             self._plots = [
-                (_rate_plot(self._gui, roles), lambda shot, t: _rate_columns(shot, t, sensors)),
-                (_plot(self._gui, "Speed, m/s", roles), lambda shot, t: _columns(shot, t, sensors, "speed_mps")),
-                (_plot(self._gui, "Height, m", roles), lambda shot, t: _columns(shot, t, sensors, "height_m")),
+                (_rate_plot(self._gui, roles), partial(_rate_columns, sensors)),
+                (_plot(self._gui, "Speed, m/s", roles), partial(_columns, sensors, "speed_mps")),
+                (_plot(self._gui, "Height, m", roles), partial(_columns, sensors, "height_m")),
             ] if feet else []  # fmt: skip
 
 
-def _columns(snapshot: Snapshot, t_s: Floats, sensors: list[str], column: str) -> Columns:
+def _columns(sensors: list[str], column: str, snapshot: Snapshot, t_s: Floats) -> Columns:
     return tuple(on_axis(t_s, snapshot.graphs[s], column) for s in sensors if s in snapshot.graphs)
 
 
-def _rate_columns(snapshot: Snapshot, t_s: Floats, sensors: list[str]) -> Columns:
+def _rate_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
     threshold = np.full(len(t_s), snapshot.main.settings.threshold_radps)
-    phases = _columns(snapshot, t_s, sensors, "swing")
-    return (*phases, *_columns(snapshot, t_s, sensors, "statistic"), threshold)
+    phases = _columns(sensors, "swing", snapshot, t_s)
+    return (*phases, *_columns(sensors, "statistic", snapshot, t_s), threshold)
 
 
 def _lines(roles: Sequence[Role], width: float = 1.6) -> list[uplot.Series]:
     return [
-        uplot.Series(label=NAMES[r] or "foot", stroke=css(FOOT[r], 1.0), width=width, points={"show": False})
+        uplot.Series(label=NAMES[r] or "foot", stroke=css(FOOT[r]), width=width, points={"show": False})
         for r in roles
     ]
 
@@ -98,14 +99,14 @@ def _rate_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle
     """|ω| and Ω_th; swing is the shaded ground behind."""
     phases = [
         uplot.Series(
-            label=f"swing {NAMES[r]}".strip(), scale="phase", fill=css(FOOT[r] if len(roles) > 1 else SWING, 0.2),
-            width=0, points={"show": False},
+            label=f"swing {NAMES[r]}".strip(), scale="phase", width=0, points={"show": False},
+            fill=css(FOOT[r] if len(roles) > 1 else SWING, 0.2),
         )
         for r in roles
     ]  # fmt: skip
-    threshold = uplot.Series(label="Ω_th", stroke=css(THRESHOLD), width=1.4, dash=(6, 4), points={"show": False})
-    series = [*phases, *_lines(roles), threshold]
-    return _add(gui, "|ω|, rad/s (dashed Ω_th, shaded swing)", series)
+    hidden = uplot.Series_Points(show=False)
+    threshold = uplot.Series(label="Ω_th", stroke=css(THRESHOLD), width=1.4, dash=(6, 4), points=hidden)
+    return _add(gui, "|ω|, rad/s (dashed Ω_th, shaded swing)", [*phases, *_lines(roles), threshold])
 
 
 def _plot(gui: viser.GuiApi, title: str, roles: Sequence[Role]) -> viser.GuiUplotHandle:

@@ -3,7 +3,16 @@
 from __future__ import annotations
 
 from app.motion import (
-    ApplyCandidate, DropCandidate, FindGains, KeepAs, SetApplyAtOnce, Snapshot, Status, Sweep, SwapAB, Undo,
+    ApplyCandidate,
+    DropCandidate,
+    FindGains,
+    KeepAs,
+    SetApplyAtOnce,
+    Snapshot,
+    Status,
+    SwapAB,
+    Sweep,
+    Undo,
 )  # fmt: skip
 from app.scene import figures, private, surface
 from app.scene.controls import Controls, Input
@@ -13,7 +22,7 @@ class CandidateBox:
     """Difference, apply, drop, undo, A and B."""
 
     def __init__(self, controls: Controls) -> None:
-        self._compared = controls.gui.add_html("")
+        self._compared = controls.html()
         self.buttons = controls.choice(
             "", {"Apply": ApplyCandidate, "Drop": DropCandidate, "Undo": Undo},
             "Apply makes the candidate the walk, past and present; drop takes it away.",
@@ -25,13 +34,12 @@ class CandidateBox:
             "A / B", {"Keep as A": lambda: KeepAs("A"), "Keep as B": lambda: KeepAs("B"), "Swap": SwapAB},
             "Keep two settings and swap them (key B).",
         )  # fmt: skip
-        self._kept = controls.gui.add_html("")
+        self._kept = controls.html()
 
     def show(self, snapshot: Snapshot) -> None:
         """As the session is."""
-        for element, text in ((self._compared, figures.comparison(snapshot)), (self._kept, figures.slots(snapshot))):
-            if element.content != text:
-                element.content = text
+        self._compared.show(figures.comparison(snapshot))
+        self._kept.show(figures.slots(snapshot))
         self._at_once.show(snapshot.apply_at_once)
 
 
@@ -45,7 +53,7 @@ class GainSearch:
         )
         self.button = controls.button("Find gains", FindGains)
         self._progress = controls.gui.add_progress_bar(0.0, visible=False, animated=True)
-        self._picture = controls.gui.add_html("")
+        self._picture = controls.html()
         self._drawn: Sweep | None = None
 
     def show(self, status: Status) -> None:
@@ -57,4 +65,4 @@ class GainSearch:
             private.set_progress(self._progress, status.sweep_progress)
         if status.sweep is not self._drawn:
             self._drawn = status.sweep
-            self._picture.content = surface.picture(status.sweep) if status.sweep is not None else ""
+            self._picture.show(surface.picture(status.sweep) if status.sweep is not None else "")

@@ -9,7 +9,7 @@ import viser
 
 from app.motion import ResetHeading, RestartHere, Snapshot, Status
 from app.scene import figures
-from app.scene.controls import Controls, Input
+from app.scene.controls import Ask, Controls, Html, Input
 from app.scene.graphs import Graphs
 from app.scene.hindsight import CandidateBox, GainSearch
 from app.scene.profiles import Profiles
@@ -31,28 +31,18 @@ NOTES = (
 )
 
 
-class Html:
-    """A piece of HTML that is sent only when it changed."""
-
-    def __init__(self, gui: viser.GuiApi) -> None:
-        self._handle = gui.add_html("")
-        self._text = ""
-
-    def show(self, text: str) -> None:
-        """Make it read so."""
-        if text != self._text:
-            self._handle.content = self._text = text
+View = dict[str, bool]
 
 
 class Panel:
     """Everything beside the scene. ``on_view`` hears of the page's own switches (follow, dark, axes)."""
 
-    def __init__(self, controls: Controls, on_view: Callable[[str, bool], None], view: dict[str, bool]) -> None:
+    def __init__(self, controls: Controls, on_view: Callable[[str, bool], None], view: View) -> None:
         gui = controls.gui
         self._controls, self._on_view = controls, on_view
         gui.main_panel.dock_right()
         gui.main_panel.set_width(WIDTH_PX)
-        self._header, self._message, self._feet = Html(gui), Html(gui), Html(gui)
+        self._header, self._message, self._feet = controls.html(), controls.html(), controls.html()
         self._replaying = Replaying(controls)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Tune"):
@@ -67,16 +57,16 @@ class Panel:
         self._graphs = _graph_panel(gui)
 
     def _source_tab(self, gui: viser.GuiApi) -> tuple[Html, Html]:
-        source = Html(gui)
+        source = self._controls.html()
         with gui.add_folder("Profiles"):
             self._profiles = Profiles(self._controls)
         with gui.add_folder("Changes"):
-            log = Html(gui)
+            log = self._controls.html()
         return source, log
 
-    def _view_tab(self, gui: viser.GuiApi, view: dict[str, bool]) -> dict[str, Input]:
-        walk = self._controls.choice("Walk", {"Reset heading": ResetHeading, "Restart from here": RestartHere})
-        self._walk = walk
+    def _view_tab(self, gui: viser.GuiApi, view: View) -> dict[str, Input]:
+        again: dict[str, Ask] = {"Reset heading": ResetHeading, "Restart from here": RestartHere}
+        self._walk = self._controls.choice("Walk", again)
         labels = {"follow": "Follow the walker", "dark": "Dark mode", "axes": "Sensor axes"}
         hints = {
             "follow": "The world glides so that the walker stays in view; your orbit and zoom stay yours.",
@@ -110,7 +100,7 @@ class Panel:
         """The control of each setting."""
         return self._tuning.inputs
 
-    def show_text(self, snapshot: Snapshot, status: Status, view: dict[str, bool]) -> None:
+    def show_text(self, snapshot: Snapshot, status: Status, view: View) -> None:
         """Words, figures and controls: at most ten times a second."""
         self._header.show(figures.header(status))
         self._message.show(figures.message(snapshot, status))

@@ -22,7 +22,7 @@ class Replaying:
         self._controls = controls
         self._folder = controls.gui.add_folder("Replay", visible=False)
         with self._folder:
-            self._position = controls.gui.add_html("")
+            self._position = controls.html()
             self.buttons = controls.choice(
                 "", {"Play": lambda: Pause(False), "Pause": lambda: Pause(True), "Step": lambda: Step()}
             )
@@ -41,9 +41,7 @@ class Replaying:
         self._folder.visible = status.replay
         if not status.replay:
             return
-        text = figures.position(status)
-        if self._position.content != text:
-            self._position.content = text
+        self._position.show(figures.position(status))
         length = status.source.duration_s
         known = length is not None and length > 0
         self._seek.handle.visible = known

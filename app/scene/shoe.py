@@ -76,12 +76,19 @@ class Shoe:
 @cache
 def sole(mirrored: bool) -> Mesh:
     """The print of the sole: a flat fan, in the shoe's x and y, around the sensor."""
-    flat = parts(mirrored)["outsole"][0][:, :2].astype(np.float64)
-    centre = np.array([flat[:, 0].mean(), 0.0])
-    x, y = (flat - centre).T
-    sector = np.floor((np.arctan2(y, x) / (2 * np.pi) + 0.5) * 36).astype(int)
-    edge = [flat[sector == i][np.argmax(np.hypot(x, y)[sector == i])] for i in np.unique(sector)]
+    x, y = parts(mirrored)["outsole"][0][:, :2].astype(np.float64).T
+    at = 0.5 * (x.min() + x.max()) - 0.5 * (x.max() - x.min()) * np.cos(np.linspace(0.12, np.pi - 0.12, 15))
+    right, left = (_edge(x, y * side, at) * side for side in (1.0, -1.0))
+    edge = np.concatenate([np.stack([at, right], axis=1), np.stack([at, left], axis=1)[::-1]])
+    centre = edge.mean(axis=0)
     vertices = np.concatenate([[centre], edge])
     turn = np.arange(len(edge))
     faces = np.stack([np.zeros_like(turn), turn + 1, (turn + 1) % len(edge) + 1], axis=1)
     return np.pad(vertices, ((0, 0), (0, 1))).astype(np.float32), faces.astype(np.uint32)
+
+
+def _edge(x: NDArray[np.float64], y: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How far to the right the points reach at each of ``at``."""
+    outer = [int(np.argmax(np.where(np.abs(x - a) < 0.009, y, -np.inf))) for a in at]
+    order = np.argsort(x[outer])
+    return np.interp(at, x[outer][order], y[outer][order])

@@ -13,7 +13,7 @@ from app.motion import Sweep
 from app.scene import words
 from app.scene.colours import viridis
 
-WIDTH, HEIGHT, LEFT, BELOW, RIGHT, TOP = 250, 150, 44, 34, 58, 10
+WIDTH, HEIGHT, LEFT, BELOW, RIGHT, TOP = 250, 150, 44, 34, 58, 16
 
 
 def png(rgb: NDArray[np.uint8]) -> bytes:
@@ -43,18 +43,21 @@ def picture(sweep: Sweep) -> str:
     """The heat map k_s × k_d, axes, colour key and the minimum's mark, as HTML."""
     rgb = viridis(brightness(sweep.closure_m)).swapaxes(0, 1)[::-1]  # k_s to the right, k_d upward
     data = base64.b64encode(png(np.ascontiguousarray(rgb))).decode()
-    x, y = _place(sweep.gains_stance, sweep.best[0], WIDTH), HEIGHT - _place(sweep.gains_swing, sweep.best[1], HEIGHT)
-    mark = "".join(
-        f'<circle cx="{LEFT + x:.1f}" cy="{TOP + y:.1f}" r="6" fill="none" stroke="{ink}" stroke-width="{w}"/>'
-        for ink, w in (("#000", 4), ("#fff", 2))
-    )
-    total_w, total_h = LEFT + WIDTH + RIGHT, TOP + HEIGHT + BELOW
+    box = f"0 0 {LEFT + WIDTH + RIGHT} {TOP + HEIGHT + BELOW}"
     return (
-        f'<div class="ss-surface"><svg viewBox="0 0 {total_w} {total_h}" role="img" aria-label="Distance to start'
-        f' over stance and swing gain"><image x="{LEFT}" y="{TOP}" width="{WIDTH}" height="{HEIGHT}"'
-        f' preserveAspectRatio="none" style="image-rendering:pixelated" href="data:image/png;base64,{data}"/>'
-        f"{_axes(sweep)}{_key(sweep)}{mark}</svg>{sentence(sweep)}</div>"
+        f'<div class="ss-surface"><svg viewBox="{box}" role="img" aria-label="Distance to start over gains">'
+        f'<image x="{LEFT}" y="{TOP}" width="{WIDTH}" height="{HEIGHT}" preserveAspectRatio="none"'
+        f' style="image-rendering:pixelated" href="data:image/png;base64,{data}"/>'
+        f"{_axes(sweep)}{_key(sweep)}{_mark(sweep)}</svg>{sentence(sweep)}</div>"
     )
+
+
+def _mark(sweep: Sweep) -> str:
+    """A ring round the best pair."""
+    x = LEFT + _place(sweep.gains_stance, sweep.best[0], WIDTH)
+    y = TOP + HEIGHT - _place(sweep.gains_swing, sweep.best[1], HEIGHT)
+    ring = f'<circle cx="{x:.1f}" cy="{y:.1f}" r="6" fill="none"'
+    return f'{ring} stroke="#000" stroke-width="4"/>{ring} stroke="#fff" stroke-width="2"/>'
 
 
 def sentence(sweep: Sweep) -> str:
@@ -85,9 +88,10 @@ def _axes(sweep: Sweep) -> str:
     for value in _ticks(sweep.gains_swing):
         y = TOP + HEIGHT - _place(sweep.gains_swing, value, HEIGHT)
         texts.append(f'<text x="{LEFT - 5}" y="{y + 3.5:.1f}" text-anchor="end">{value:.3g}</text>')
-    middle = TOP + HEIGHT / 2
-    texts.append(f'<text x="{LEFT + WIDTH / 2}" y="{TOP + HEIGHT + 29}" text-anchor="middle">stance gain k_s, 1/s</text>')
-    texts.append(f'<text transform="translate(11 {middle}) rotate(-90)" text-anchor="middle">swing gain k_d, 1/s</text>')
+    below = f'x="{LEFT + WIDTH / 2}" y="{TOP + HEIGHT + 29}"'
+    beside = f'transform="translate(11 {TOP + HEIGHT / 2}) rotate(-90)"'
+    for place, label in ((below, "stance gain k_s, 1/s"), (beside, "swing gain k_d, 1/s")):
+        texts.append(f'<text {place} text-anchor="middle">{label}</text>')
     return "".join(texts)
 
 
@@ -102,13 +106,13 @@ def _key(sweep: Sweep) -> str:
     finite = np.sort(sweep.closure_m[np.isfinite(sweep.closure_m)].ravel())
     x = LEFT + WIDTH + 8
     bar = (
-        f'<image x="{x}" y="{TOP + 12}" width="9" height="{HEIGHT - 24}" preserveAspectRatio="none"'
+        f'<image x="{x}" y="{TOP}" width="9" height="{HEIGHT}" preserveAspectRatio="none"'
         f' href="data:image/png;base64,{data}"/>'
     )
     if not finite.size:
         return bar
     marks = ((0.0, finite[0]), (0.5, finite[len(finite) // 2]), (1.0, finite[-1]))
-    return bar + f'<text x="{x}" y="{TOP + 6}">end to start</text>' + "".join(
-        f'<text x="{x + 13}" y="{TOP + 12 + part * (HEIGHT - 24) + 4:.1f}">{value:.2g} m</text>'
+    return bar + f'<text x="{x}" y="{TOP - 6}">to start</text>' + "".join(
+        f'<text x="{x + 13}" y="{TOP + part * (HEIGHT - 8) + 8:.1f}">{value:.2g} m</text>'
         for part, value in marks
     )

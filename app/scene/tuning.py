@@ -68,7 +68,9 @@ class Tuning:
         if isinstance(default, bool):
             self._inputs[name] = self._controls.checkbox(title(limit), _setter(name), default, limit.sentence)
         elif isinstance(default, str):
-            self._inputs[name] = self._controls.dropdown(title(limit), limit.choices, _setter(name), limit.sentence)
+            self._inputs[name] = self._controls.dropdown(
+                title(limit), limit.choices, _setter(name), limit.sentence
+            )
         else:
             self._inputs[name] = self._slider(name, default, limit)
         self.resets.append(self._controls.button("↺", _resetter(name, default)))

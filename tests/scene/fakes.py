@@ -8,8 +8,22 @@ from dataclasses import replace
 import numpy as np
 
 from app.motion import (
-    Change, Footprint, FootView, GaitPhase, Graph, Health, Link, Role, Snapshot, SourceInfo, Status, Sweep, TrackView,
-    Trail, TrailPiece, Vector,
+    Change,
+    Footprint,
+    FootView,
+    GaitPhase,
+    Graph,
+    Health,
+    Link,
+    Role,
+    Snapshot,
+    SourceInfo,
+    Status,
+    Sweep,
+    TrackView,
+    Trail,
+    TrailPiece,
+    Vector,
 )  # fmt: skip
 from app.rotation import from_yaw_pitch_roll
 from app.settings import Settings
@@ -43,7 +57,7 @@ def path(start_s: float, end_s: float, turn_per_m: float, count: int) -> np.ndar
 
 
 def trail(t_s: float, turn_per_m: float = 0.06, name: str = "a", per_stride: int = 14) -> Trail:
-    count, swing = progress(t_s)
+    count, _ = progress(t_s)
     settled = count // 5 * 5
     pieces = tuple(
         TrailPiece(f"{name}{i}", path(i * STRIDE_S, (i + 5) * STRIDE_S, turn_per_m, 5 * per_stride))
@@ -75,13 +89,14 @@ def foot(t_s: float, role: Role = Role.FOOT, turn_per_m: float = 0.06, name: str
     )  # fmt: skip
 
 
-def graph(t_s: float) -> Graph:
+def graph(t_s: float, ahead_s: float = 0.0) -> Graph:
     at = np.linspace(max(0.0, t_s - 10), t_s, 200)
-    swing = np.array([progress(t)[1] for t in at])
+    walked = at + ahead_s
+    swing = np.array([progress(t)[1] for t in walked])
     active = swing > 0
     rate = np.where(active, 6.5 * np.sin(np.pi * np.clip(swing, 0, 1)) ** 0.7, 0.15 + 0.1 * np.sin(9 * at) ** 2)
     speed = np.where(active, 4.6 * np.sin(np.pi * np.clip(swing, 0, 1)) ** 2, 0.0)
-    height = np.array([-pose(t)[0][2] for t in at])
+    height = np.array([-pose(t)[0][2] for t in walked])
     return Graph(at, rate, active.astype(float), speed, height)
 
 
@@ -99,11 +114,11 @@ def snapshot(t_s: float, two: bool = False, candidate: bool = False, truth: bool
         candidate_settings=tuned if candidate else settings, pending=False, apply_at_once=False, undo_depth=1,
         slots={"A": settings}, slot_now="A",
         changes=(Change(1200, 0, "browser 2", "gain_stance 1.05 → 1.4"), Change(2400, 0, "browser 1", "undo")),
-        graphs={role.value: graph(starts[role]) for role in roles},
+        graphs={role.value: graph(t_s, starts[role] - t_s) for role in roles},
         health={role.value: Health(100.2, int(t_s * 100), {"time went backward": 2}, 0, 1) for role in roles},
         hindsight_from_s=0.0, stored_bytes=12_400_000, budget_bytes=512_000_000, epoch=0,
     )  # fmt: skip
-    return replace(shot, **changes)
+    return replace(shot, **changes)  # type: ignore[arg-type]
 
 
 def sweep() -> Sweep:
@@ -121,4 +136,4 @@ def status(**changes: object) -> Status:
     plain = Status(
         source, Link.LIVE, replay=True, speed=1.0, position_s=31.4, profiles=("papers", "corridor", "stairs")
     )
-    return replace(plain, **changes)
+    return replace(plain, **changes)  # type: ignore[arg-type]
