@@ -61,6 +61,11 @@ def set_progress(bar: Any, part: float) -> None:
     bar.__setattr__("value", 100.0 * min(max(part, 0.0), 1.0))
 
 
+def inputs(server: viser.ViserServer) -> dict[str, Any]:
+    """Every element of the GUI that takes a value, by its name (for tests)."""
+    return dict(server.gui._gui_input_handle_from_uuid)
+
+
 def broadcast_messages(server: viser.ViserServer) -> list[Any]:
     """What a browser that joins now would be sent (for tests)."""
     return list(server._websock_server._broadcast_buffer.message_from_id.values())

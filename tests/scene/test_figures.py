@@ -1,0 +1,99 @@
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+
+import pytest
+
+from app.motion import Change, GaitPhase, Link
+from app.scene import figures
+from app.settings import Settings
+from tests.scene import fakes
+from tests.scene.test_words import read
+
+EVIL = '<img src=x onerror="document.title=1">](javascript:x) **b**'
+OURS = {"div", "span", "b", "i", "small", "label", "table", "tr", "th", "td", "ul", "li"}
+
+
+def everything(snapshot: figures.Snapshot, status: figures.Status) -> str:
+    return "".join((
+        figures.header(status), figures.message(snapshot, status), figures.feet(snapshot),
+        figures.source(snapshot, status), figures.log(snapshot, 100.0), figures.position(status),
+        figures.comparison(snapshot), figures.slots(snapshot),
+    ))  # fmt: skip
+
+
+def test_no_users_text_is_markup() -> None:
+    snapshot = fakes.snapshot(9.7, candidate=True)
+    status = fakes.status(message=EVIL)
+    source = replace(status.source, name=EVIL, format=EVIL, assumed=(EVIL,), dropped={EVIL: 1})
+    health = {EVIL: next(iter(snapshot.health.values()))._replace(dropped={EVIL: 2})}
+    snapshot = replace(snapshot, health=health, changes=(Change(1, 0, EVIL, EVIL),))
+    parsed = read(everything(snapshot, replace(status, source=source)))
+    assert set(parsed.tags) <= OURS
+    assert EVIL in parsed.text
+
+
+@pytest.mark.parametrize(("phase", "word"), [(GaitPhase.STANCE, "STANCE"), (GaitPhase.SWING, "SWING")])
+def test_the_phase_is_a_word_a_shape_and_a_colour(phase: GaitPhase, word: str) -> None:
+    badge = figures.badge(fakes.foot(3.0)._replace(phase=phase))
+    assert word in badge
+    assert f"ss-{word.lower()}" in badge
+    assert ("▬" in badge) == (phase is GaitPhase.STANCE)
+
+
+def test_before_the_still_start_is_found() -> None:
+    assert "STAND STILL" in figures.badge(fakes.foot(0.0)._replace(levelled=False))
+
+
+def test_stale_is_said_after_half_a_second() -> None:
+    assert "STALE" not in figures.header(fakes.status(stale_s=0.4))
+    assert "STALE <b>3.2 s</b>" in figures.header(fakes.status(stale_s=3.2))
+    assert "STALE" not in figures.header(fakes.status(stale_s=9.0, link=Link.ENDED))
+
+
+def test_a_pose_that_is_no_number_is_said() -> None:
+    snapshot = fakes.snapshot(5.0)
+    lost = snapshot.main.feet[0]._replace(position_n=(math.nan, 0.0, 0.0))
+    snapshot = replace(snapshot, main=snapshot.main._replace(feet=(lost,)))
+    assert "not a finite number" in figures.message(snapshot, fakes.status())
+
+
+def test_every_figure_has_its_unit() -> None:
+    text = read(figures.feet(fakes.snapshot(9.7))).text
+    for words in ("Strides8", "10.80 m", "m/s", "steps/min", "105.7 %", "0.12 m"):
+        assert words in text
+
+
+def test_two_feet_are_said_not_to_be_linked() -> None:
+    assert "not linked" in figures.feet(fakes.snapshot(9.7, two=True))
+    assert "not linked" not in figures.feet(fakes.snapshot(9.7))
+
+
+def test_the_difference_is_the_candidates_minus_the_mains() -> None:
+    snapshot = fakes.snapshot(12.9, candidate=True)
+    assert snapshot.candidate is not None
+    main, other = snapshot.main.feet[0], snapshot.candidate.feet[0]
+    text = read(figures.comparison(snapshot)).text
+    assert figures.words.signed(other.to_start_m - main.to_start_m) + " m" in text
+    assert "k_s 1.05 → 1.6 1/s" in text
+
+
+def test_angles_are_told_in_degrees() -> None:
+    one = Settings()
+    assert figures.differences(one, replace(one, start_heading_rad=math.pi / 2)) == "ψ_0 0 → 90 °"
+    assert figures.differences(one, replace(one, magnetometer=True)) == "Magnetometer on"
+
+
+def test_the_log_has_the_newest_first_and_ends() -> None:
+    changes = tuple(Change(i * 100, 0, "browser 1", f"change {i}") for i in range(50))
+    text = read(figures.log(replace(fakes.snapshot(3.0), changes=changes), 100.0)).text
+    assert text.index("change 49") < text.index("change 48")
+    assert "change 30" not in text
+
+
+def test_north_is_magnetic_only_with_the_magnetometer() -> None:
+    snapshot = fakes.snapshot(3.0)
+    assert "the start heading" in figures.source(snapshot, fakes.status())
+    held = snapshot.main._replace(settings=Settings(magnetometer=True))
+    assert "magnetic north" in figures.source(replace(snapshot, main=held), fakes.status())
