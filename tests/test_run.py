@@ -1,0 +1,221 @@
+"""The whole program as its user meets it: a process, a port, a real Chromium, a second browser, Ctrl-C."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import signal
+import socket
+import subprocess
+import sys
+import urllib.request
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser, Page
+
+from tests.scene.pages import PATIENCE_MS, open_page, pixels
+
+#: A walk of a minute; drawn small, because a test machine has no graphics card.
+SOURCE = "sim:walk?path=eight&size=6&duration=60&rate=100&still=1&noise=0.3"
+POSITION = "() => Object.assign({}, window.__viserMutable.nodeRefFromName['/ned/foot'].position)"
+NODES = "() => Object.keys(window.__viserSceneTree.getState()).filter(name => name.startsWith('/ned'))"
+
+
+def environment(tmp_path: Path) -> dict[str, str]:
+    """A home of its own, so that no test sees another's profiles; compiled kernels are shared."""
+    return {**os.environ, "XDG_CONFIG_HOME": str(tmp_path / "config")}
+
+
+class Program:
+    """``stridescope`` as a process."""
+
+    def __init__(self, tmp_path: Path, *arguments: str) -> None:
+        self.port = free_port()
+        command = [sys.executable, "-m", "app", "walk", "--no-open", "--port", str(self.port), *arguments]
+        self.errors = tmp_path / "stderr.txt"
+        with self.errors.open("w") as errors:
+            self.process = subprocess.Popen(
+                command, stdout=subprocess.PIPE, stderr=errors, text=True, env=environment(tmp_path)
+            )
+        assert self.process.stdout is not None
+        self.greeting = self.process.stdout.readline()
+        self.address = f"http://127.0.0.1:{self.port}/"
+
+    def health(self) -> dict[str, object]:
+        with urllib.request.urlopen(f"{self.address}healthz", timeout=30) as answer:
+            health: dict[str, object] = json.load(answer)
+        return health
+
+    def end(self, number: int = signal.SIGINT) -> int:
+        self.process.send_signal(number)
+        return self.process.wait(timeout=60)
+
+
+def free_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+@pytest.fixture(scope="module")
+def program(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Program]:
+    running = Program(tmp_path_factory.mktemp("program"), "--source", f"{SOURCE}&loop=1")
+    yield running
+    assert running.end() == 0
+    assert "Traceback" not in running.errors.read_text()
+
+
+@pytest.fixture(scope="module")
+def page(browser: Browser, program: Program) -> Iterator[Page]:
+    opened = open_page(browser, program.address, (900, 600))
+    yield opened
+    opened.close()
+
+
+def test_it_says_where_it_is(program: Program) -> None:
+    assert program.address.rstrip("/") in program.greeting
+    assert program.health()["ok"] is True
+
+
+def test_a_shoe_walks_and_is_drawn(page: Page, build_dir: Path) -> None:
+    before = page.evaluate(POSITION)
+    page.wait_for_function(
+        "before => { const p = window.__viserMutable.nodeRefFromName['/ned/foot'].position;"
+        " return Math.hypot(p.x - before.x, p.y - before.y, p.z - before.z) > 0.3 }",
+        arg=before,
+        timeout=PATIENCE_MS,
+    )
+    page.screenshot(path=str(build_dir / "walk.png"))
+    blue = sum(b > r + 60 and b > 100 for r, _, b in pixels(page))
+    assert blue > 20, "no pixel of the blue shoe or its trail on the page"
+
+
+def test_the_phase_flips_by_word(page: Page) -> None:
+    for word in ("STANCE", "SWING"):
+        page.wait_for_function(f"() => document.body.innerText.includes('{word}')", timeout=PATIENCE_MS)
+
+
+def test_strides_are_counted_while_it_walks(page: Page) -> None:
+    strides = "() => Number((document.body.innerText.match(/Strides\\s+(\\d+)/) || [0, -1])[1])"
+    page.wait_for_function(f"() => ({strides})() >= 2", timeout=PATIENCE_MS)
+
+
+def move_slider(page: Page, label: str, value: str) -> None:
+    """Type a value into a slider's number field, as a person does."""
+    field = (
+        page.get_by_text(re.compile(label))
+        .first.locator("xpath=ancestor::*[.//input][1]")
+        .locator("input")
+        .last
+    )
+    field.fill(value)
+    field.press("Enter")
+    field.blur()
+
+
+def test_a_slider_makes_a_ghost_that_both_browsers_see(
+    browser: Browser, program: Program, page: Page
+) -> None:
+    second = open_page(browser, program.address, (900, 600))
+    try:
+        move_slider(page, "Stance gain", "0.4")
+        for seen in (page, second):
+            seen.wait_for_function("() => /[Cc]andidate/.test(document.body.innerText)", timeout=PATIENCE_MS)
+            seen.wait_for_function(
+                "() => Array.from(document.querySelectorAll('input')).some(i => i.value === '0.4')",
+                timeout=PATIENCE_MS,
+            )
+            seen.wait_for_function(
+                f"() => ({NODES})().some(name => name.includes('ghost'))", timeout=PATIENCE_MS
+            )
+        second.get_by_role("button", name="Apply", exact=True).click()
+        for seen in (page, second):
+            seen.wait_for_function(
+                "() => document.body.innerText.includes('No candidate')", timeout=PATIENCE_MS
+            )
+    finally:
+        second.close()
+
+
+def test_a_reload_in_mid_walk_shows_the_present(page: Page) -> None:
+    page.reload()
+    page.wait_for_function(
+        "() => /Strides\\s+[1-9]/.test(document.body.innerText)"
+        " && window.__viserMutable.nodeRefFromName['/ned/foot']",
+        timeout=PATIENCE_MS,
+    )
+
+
+# --- without a browser ---------------------------------------------------------------------------------
+
+
+def test_ctrl_c_ends_it_quietly(tmp_path: Path) -> None:
+    program = Program(tmp_path, "--source", SOURCE)
+    assert program.end(signal.SIGINT) == 0
+    assert program.errors.read_text() == ""
+
+
+def test_a_term_signal_ends_it_too(tmp_path: Path) -> None:
+    assert Program(tmp_path, "--source", SOURCE).end(signal.SIGTERM) == 0
+
+
+def refused(tmp_path: Path, *arguments: str) -> str:
+    """Run a command that must fail on the user's input; its one line."""
+    done = subprocess.run(
+        [sys.executable, "-m", "app", "walk", "--no-open", *arguments],
+        capture_output=True, text=True, timeout=110, env=environment(tmp_path), check=False,
+    )  # fmt: skip
+    assert done.returncode == 2, done.stderr
+    assert done.stderr.count("\n") == 1
+    assert "Traceback" not in done.stderr
+    return done.stderr
+
+
+def test_a_taken_port_is_an_error(tmp_path: Path) -> None:
+    with socket.socket() as taken:
+        taken.bind(("127.0.0.1", 0))
+        taken.listen()
+        port = str(taken.getsockname()[1])
+        assert port in refused(tmp_path, "--port", port, "--source", SOURCE)
+
+
+def test_another_host_needs_a_token(tmp_path: Path) -> None:
+    assert "token" in refused(tmp_path, "--host", "0.0.0.0", "--source", SOURCE)
+
+
+@pytest.mark.parametrize(
+    ("arguments", "word"),
+    [
+        (["--source", "no-such-file.csv"], "no-such-file.csv"),
+        (["--source", "sim:walk?legs=3"], "legs"),
+        (["--source", "serial:/dev/ttyUSB0"], "serial"),
+        (["--set", "gain_stance=99"], "gain_stance"),
+        (["--set", "gain_stance"], "KEY=VALUE"),
+        (["--profile", "nobody"], "nobody"),
+        (["--port", "http"], "http"),
+        (["--frobnicate"], "--frobnicate"),
+    ],
+)
+def test_a_wrong_word_is_one_line(tmp_path: Path, arguments: list[str], word: str) -> None:
+    assert word in refused(tmp_path, *arguments)
+
+
+def test_nowhere_to_write_is_no_obstacle(tmp_path: Path) -> None:
+    """A home and a cache below a plain file cannot be made by anybody, root included."""
+    wall = tmp_path / "wall"
+    wall.write_text("")
+    env = {
+        **os.environ,
+        "HOME": str(wall / "home"),
+        "XDG_CACHE_HOME": str(wall / "c"),
+        "XDG_CONFIG_HOME": str(wall / "f"),
+    }
+    done = subprocess.run(
+        [sys.executable, "-m", "app", "process", "sim:walk?strides=3", "--json"],
+        capture_output=True, text=True, timeout=110, env=env, check=False,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout)["feet"]["foot"]["strides"] == 3
