@@ -36,7 +36,7 @@ class Input:
     def show(self, value: Any) -> None:
         """Make every browser show this; a control just touched is left until the hand is off it."""
         handle = self.handle
-        if handle.value == value:
+        if handle.value == value or (isinstance(value, float) and not math.isfinite(value)):
             return
         touched = handle.update_timestamp != self._ours
         if touched and abs(time.time() - handle.update_timestamp) < HOLD_S:

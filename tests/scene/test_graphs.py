@@ -1,0 +1,54 @@
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.scene import graphs, private
+from app.scene.page import Scene
+from tests.scene import fakes
+
+
+def test_times_are_the_last_ten_seconds() -> None:
+    t_s = graphs.times([fakes.graph(31.4)])
+    assert (t_s[0], t_s[-1]) == pytest.approx((21.4, 31.4))
+    assert (np.diff(t_s) > 0).all()
+    assert len(t_s) == graphs.POINTS
+
+
+def test_two_feet_share_one_axis() -> None:
+    late = fakes.graph(12.0)
+    t_s = graphs.times([fakes.graph(11.5), late])
+    assert t_s[-1] == 12.0
+    assert np.allclose(graphs.on_axis(late.t_s, late, "speed_mps"), late.speed_mps)
+
+
+def test_the_phase_stays_nought_or_one() -> None:
+    graph = fakes.graph(31.4)
+    assert set(graphs.on_axis(np.linspace(20.0, 33.0, 997), graph, "swing")) == {0.0, 1.0}
+
+
+def test_no_samples_yet() -> None:
+    nothing = fakes.graph(1.0)._replace(**dict.fromkeys(("t_s", "statistic", "swing", "speed_mps", "height_m"), np.zeros(0)))
+    t_s = graphs.times([nothing])
+    assert (np.diff(t_s) > 0).all()
+    assert not graphs.on_axis(t_s, nothing, "statistic").any()
+
+
+def plots(scene: Scene) -> list[object]:
+    return [m for m in private.broadcast_messages(scene._server) if type(m).__name__ == "GuiUplotMessage"]
+
+
+def test_graphs_are_made_anew_for_other_feet(scene: Scene) -> None:
+    scene.draw(fakes.snapshot(5.0), fakes.status())
+    drawn = [plot for plot, _ in scene.panel._graphs._plots]
+    assert [len(plot.data) for plot in drawn] == [4, 2, 2]
+    scene._next_graph = 0.0
+    scene.draw(fakes.snapshot(5.0, two=True), fakes.status())
+    assert [len(plot.data) for plot, _ in scene.panel._graphs._plots] == [6, 3, 3]
+    assert all(plot._impl.removed for plot in drawn)
+
+
+def test_the_threshold_is_the_main_tracks(scene: Scene) -> None:
+    scene.draw(fakes.snapshot(5.0), fakes.status())
+    rate = scene.panel._graphs._plots[0][0]
+    assert set(rate.data[-1]) == {fakes.snapshot(5.0).main.settings.threshold_radps}
