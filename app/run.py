@@ -12,11 +12,13 @@ import logging
 import os
 import signal
 import sys
+import threading
 import time
 import webbrowser
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
@@ -69,7 +71,8 @@ class Viewer:
         self._orders: asyncio.Queue[m.Order] = asyncio.Queue()
         self._work = asyncio.Event()  # the session wants something re-estimated
         self._stop = asyncio.Event()
-        self._workers = ThreadPoolExecutor(2, thread_name_prefix="estimate")
+        # two for a search, one so that a slider never waits for it
+        self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
         self._status = m.Status(source.info, m.Link.WAITING, replay=True, profiles=profiles.names())
         self._message_until = 0.0
         self._last_sample_s = time.monotonic()
@@ -85,27 +88,26 @@ class Viewer:
         def submit(order: m.Order) -> None:
             loop.call_soon_threadsafe(self._orders.put_nowait, order)
 
-        scene = Scene(submit)
-        door = Door(
-            host=self._options.host,
-            port=self._options.port,
-            viser_port=scene.port,
-            rules=scene.rules,
-            health=self._health,
-            token=self._options.token,
-            extra_head=scene.head,
-        )
-        try:
+        with contextlib.ExitStack() as closing:
+            closing.callback(self._workers.shutdown, wait=False, cancel_futures=True)
+            scene = Scene(submit)
+            closing.callback(scene.close)
+            door = Door(
+                host=self._options.host,
+                port=self._options.port,
+                viser_port=scene.port,
+                rules=scene.rules,
+                health=self._health,
+                token=self._options.token,
+                extra_head=scene.head,
+            )
+            closing.callback(door.stop)
             door.start()
             tell(f"Stridescope is at {door.address}  (Ctrl-C ends it)")
             if self._options.open_browser:
                 open_in_browser(door.address)
             await self._run(scene)
-        finally:
             self._give_up = True
-            door.stop()
-            scene.close()
-            self._workers.shutdown(wait=False, cancel_futures=True)
 
     async def _run(self, scene: Scene) -> None:
         tasks = [
@@ -126,20 +128,34 @@ class Viewer:
     # --- in ----------------------------------------------------------------------------------------
 
     async def _acquire(self) -> None:
-        loop = asyncio.get_running_loop()
-
-        def tell(what: str) -> None:
-            message = f"Preparing {what} (slow only the first time)"
-            loop.call_soon_threadsafe(self._say, message)
-
-        await loop.run_in_executor(self._workers, warm_up, tell)
-        self._say("")
+        await self._prepare()
         async for item in self._source:
             if isinstance(item, m.RestartHere):
                 self._take_order(m.Order(item, "replay", time.monotonic_ns()))
             else:
                 self._session.take(item)
                 self._last_sample_s = time.monotonic()
+
+    async def _prepare(self) -> None:
+        """Compile in a thread that does not hold up Ctrl-C, and say what is being compiled."""
+        loop = asyncio.get_running_loop()
+        ready = loop.create_future()
+
+        def tell(what: str) -> None:
+            loop.call_soon_threadsafe(self._say, f"Preparing {what} (slow only the first time)")
+
+        def work() -> None:
+            try:
+                warm_up(tell)
+                answer = partial(ready.set_result, None)
+            except Exception as error:
+                answer = partial(ready.set_exception, error)
+            with contextlib.suppress(RuntimeError):  # the program has ended meanwhile
+                loop.call_soon_threadsafe(answer)
+
+        threading.Thread(target=work, name="prepare", daemon=True).start()
+        await ready
+        self._say("")
 
     def _role(self, sensor: str) -> m.Role:
         return self._source.info.sensors.get(sensor) or m.role_of(sensor)
