@@ -131,27 +131,42 @@ class Session:
         return self.wanted if self.wanted is not None and self.wanted.apply else None
 
     def adopt(self, job: Reestimation, track: Track) -> None:
-        """Bring back the result of ``wanted``; one that is no longer wanted is let go."""
-        if self.wanted is None or job.number != self.wanted.number:
-            return
+        """Bring back the result of a job.
+
+        One that is no longer wanted is let go, but while something newer is awaited it is shown
+        meanwhile, so that the ghost follows a slider that is being dragged.
+        """
         wanted = self.wanted
-        if any(
-            foot.tracker.rows.end < self.stores[sensor].samples.start for sensor, foot in track.feet.items()
-        ):
-            self.wanted = self._fresh(wanted)  # the store has moved past it
+        if wanted is None or job.epoch != self.epoch:
+            return
+        newest = job.number == wanted.number
+        caught_up = self._catch_up(track)
+        if not newest:
+            self.candidate = track if caught_up else self.candidate
+            return
+        if not caught_up:
+            self.wanted = self._fresh(wanted)
             return
         self.wanted = None
-        bases = self.main.bases()
-        for sensor, store in self.stores.items():
-            if store.samples:
-                track.drop_before(sensor, store.samples.start)
-                track.advance(sensor, store.samples, bases.get(sensor))
         if wanted.apply:
             self._make_main(track, wanted)
         else:
             self.candidate = track
         if self._next is not None:
             self.wanted, self._next = self._fresh(self._next), None
+
+    def _catch_up(self, track: Track) -> bool:
+        """Take the samples that came meanwhile; False where the store has moved past the track."""
+        if any(
+            foot.tracker.rows.end < self.stores[sensor].samples.start for sensor, foot in track.feet.items()
+        ):
+            return False
+        bases = self.main.bases()
+        for sensor, store in self.stores.items():
+            if store.samples:
+                track.drop_before(sensor, store.samples.start)
+                track.advance(sensor, store.samples, bases.get(sensor))
+        return True
 
     # --- inside ------------------------------------------------------------------------------------
 
@@ -170,7 +185,7 @@ class Session:
         """The same job, for the samples that are here now."""
         self._jobs += 1
         stores = {sensor: store.samples.share() for sensor, store in self.stores.items() if store.samples}
-        return replace(job, number=self._jobs, stores=stores, bases=self.main.bases())
+        return replace(job, number=self._jobs, epoch=self.epoch, stores=stores, bases=self.main.bases())
 
     def _apply_candidate(self, order: m.Order) -> None:
         why = Reestimation(
@@ -180,7 +195,7 @@ class Session:
             self.wanted, self._next = self._fresh(why), None
         elif self.wanted is not None and not self.wanted.apply:
             w = self.wanted
-            self.wanted = replace(why, number=w.number, stores=w.stores, bases=w.bases)
+            self.wanted = replace(why, number=w.number, epoch=w.epoch, stores=w.stores, bases=w.bases)
         elif self.wanted is None and self.candidate is not None:
             self._make_main(self.candidate, why)
 

@@ -242,6 +242,7 @@ class Reestimation:
     reason: str
     host_ns: int
     taken: int  # samples and orders taken when it was asked for
+    epoch: int = 0  # of the session when it was given out
 
     def run(self) -> Track:
         """The new track over all samples that were there when the work was given out."""
