@@ -155,10 +155,11 @@ class Tracker:
     def _add_stride(self, event: Floats) -> None:
         lift, contact = max(int(event[Event.LIFT_ROW]), self.rows.start), int(event[Event.CONTACT_ROW])
         lifts = [lift_above_line(rows, event) for rows, _ in self.rows.pieces(lift, contact + 1)]
-        start_n = (event[Event.START], event[Event.START + 1], event[Event.START + 2])  # the row may be gone
-        lifted = contact_at(self._row(lift), event[Event.LIFT_NS] * 1e-9)._replace(position_n=start_n)
+        lift_s = float(event[Event.LIFT_NS]) * 1e-9
+        north, east, down = event[Event.START : Event.START + 3].tolist()  # the row at the lift may be gone
+        lifted = contact_at(self._row(lift), lift_s)._replace(position_n=(north, east, down))
         before = self._contact or lifted
-        self._contact = contact_at(self._row(contact), event[Event.LIFT_NS] * 1e-9 + event[Event.SWING_S])
+        self._contact = contact_at(self._row(contact), lift_s + float(event[Event.SWING_S]))
         stride = stride_between(before, self._contact, event, self.stride_count + 1, max(lifts))
         self.strides.append(stride)
         self.distance_m += stride.length_m
