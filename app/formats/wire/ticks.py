@@ -1,0 +1,138 @@
+"""Heart: device clocks: counters that wrap, restart or have a tick of unknown length, and none at all."""
+
+from __future__ import annotations
+
+from app.motion import GAP_NS
+
+_SLACK_NS = 1_000_000_000  # a device step may exceed the host's by this before it is suspect
+_IN_A_ROW = 8  # stamps a little in the past: late datagrams, unless so many follow each other
+
+
+class DeviceClock:
+    """A counter of ``bits`` bits and ``tick_ns`` a tick as nanoseconds that only ever increase.
+
+    A step that contradicts the host's clock is believed when the next stamp follows it: then the
+    device restarted, and its time goes on at the host's pace, over a gap that no one integrates
+    across. Until then, and for repeated or late stamps, the reading is refused.
+    """
+
+    def __init__(self, tick_ns: int, bits: int) -> None:
+        self.restarts = 0
+        self._tick_ns = tick_ns
+        self._wrap = 1 << bits
+        self._ticks = -1  # none yet
+        self._host_ns = 0
+        self._device_ns = 0
+        self._odd_ticks = -1
+        self._odd_in_a_row = 0
+
+    def stamp(self, ticks: int, host_ns: int) -> int | None:
+        """Device time of a counter that arrived at ``host_ns``; None: refuse the reading."""
+        if self._ticks < 0:
+            return self._take(ticks, host_ns, ticks * self._tick_ns)
+        host_step_ns = max(host_ns - self._host_ns, 0)
+        step_ns = self._step(ticks, self._ticks, host_step_ns) * self._tick_ns
+        if 0 < step_ns <= host_step_ns + _SLACK_NS:
+            return self._take(ticks, host_ns, self._device_ns + step_ns)
+        if step_ns == 0 or not self._believed(ticks, step_ns):
+            return None
+        if step_ns > 0 and host_step_ns == 0:
+            return self._take(ticks, host_ns, self._device_ns + step_ns)  # a recorded stream, fed at once
+        self.restarts += 1
+        return self._take(ticks, host_ns, self._device_ns + max(host_step_ns, GAP_NS + 1))
+
+    def _take(self, ticks: int, host_ns: int, device_ns: int) -> int:
+        self._ticks, self._host_ns, self._device_ns = ticks, host_ns, device_ns
+        self._odd_ticks, self._odd_in_a_row = -1, 0
+        return device_ns
+
+    def _step(self, ticks: int, before: int, host_step_ns: int) -> int:
+        """The signed step nearest to what the host saw pass: silence may last longer than a wrap."""
+        step = (ticks - before) % self._wrap
+        expected = host_step_ns // self._tick_ns
+        return step + (expected - step + self._wrap // 2) // self._wrap * self._wrap
+
+    def _believed(self, ticks: int, step_ns: int) -> bool:
+        follows = (
+            self._odd_ticks >= 0 and 0 < (ticks - self._odd_ticks) % self._wrap * self._tick_ns < _SLACK_NS
+        )
+        self._odd_in_a_row = self._odd_in_a_row + 1 if follows else 0
+        self._odd_ticks = ticks
+        return self._odd_in_a_row >= (_IN_A_ROW if -_SLACK_NS < step_ns < 0 else 1)
+
+
+class TickLength:
+    """How long a tick is, told by the host's clock: a line through five seconds, snapped to what is known."""
+
+    SPAN_NS = 5_000_000_000
+    NEAR = 0.02
+    MOST = 4096  # so many readings without five seconds: a stream fed at once, by no clock
+
+    def __init__(self, known_ns: tuple[int, ...], bits: int) -> None:
+        self.snapped = False  # whether the length found is one of the known
+        self._known_ns = known_ns
+        self._wrap = 1 << bits
+        self._points: list[tuple[int, int]] = []  # ticks and host time since the first
+
+    def add(self, ticks: int, host_ns: int) -> int | None:
+        """The length of a tick in ns once five seconds have passed, else None.
+
+        The first known length, not snapped, where the host's clock does not tell.
+        """
+        points = self._points
+        if points:
+            last_ticks, _ = points[-1]
+            ticks = last_ticks + (ticks - last_ticks) % self._wrap
+        points.append((ticks, host_ns))
+        if len(points) >= self.MOST:
+            return self._known_ns[0]
+        if host_ns - points[0][1] < self.SPAN_NS or ticks == points[0][0]:
+            return None
+        measured_ns = self._slope()
+        nearest = min(self._known_ns, key=lambda known: abs(known - measured_ns))
+        self.snapped = abs(nearest - measured_ns) <= self.NEAR * nearest
+        return nearest if self.snapped else max(round(measured_ns), 1)
+
+    def _slope(self) -> float:
+        """Nanoseconds a tick, by least squares."""
+        n = len(self._points)
+        mean_ticks = sum(ticks for ticks, _ in self._points) / n
+        mean_ns = sum(host_ns for _, host_ns in self._points) / n
+        with_ns = sum((ticks - mean_ticks) * (host_ns - mean_ns) for ticks, host_ns in self._points)
+        return with_ns / sum((ticks - mean_ticks) ** 2 for ticks, _ in self._points)
+
+
+class ArrivalClock:
+    """Stamps for a device without a clock: its samples counted, the count held to the host's time.
+
+    A phase-locked loop: bursts and jitter of arrival are smoothed to a 64th, and so is a lost sample.
+    Without ``rate_hz`` the rate is learnt; for the first half second stamps are then arrival times.
+    """
+
+    _LEARN_NS = 500_000_000
+    _PHASE, _RATE = 64, 8192
+
+    def __init__(self, rate_hz: float | None = None) -> None:
+        self._period_ns = 1e9 / rate_hz if rate_hz else 0.0
+        self._first_ns = 0
+        self._count = 0
+        self._exact_ns = 0.0
+        self._stamp_ns = 0
+
+    def stamp(self, host_ns: int) -> int:
+        """The next sample's time; increases strictly."""
+        if self._count == 0:
+            self._first_ns, self._exact_ns = host_ns, 0.0
+        elapsed_ns = float(host_ns - self._first_ns)
+        late_ns = elapsed_ns - self._exact_ns - self._period_ns
+        if self._count and self._period_ns and abs(late_ns) <= GAP_NS:
+            self._exact_ns += max(self._period_ns + late_ns / self._PHASE, 0.5 * self._period_ns)
+            self._period_ns = max(self._period_ns + late_ns / self._RATE, 1.0)
+        elif self._count:
+            self._exact_ns = elapsed_ns
+            if not self._period_ns and elapsed_ns >= self._LEARN_NS:
+                self._period_ns = elapsed_ns / self._count
+        self._count += 1
+        stamp_ns = self._first_ns + round(self._exact_ns)
+        self._stamp_ns = max(stamp_ns, self._stamp_ns + 1) if self._count > 1 else stamp_ns
+        return self._stamp_ns
