@@ -86,9 +86,15 @@ class Client:
 
 
 def controls(replayed: list[dict[str, Any]]) -> dict[str, str]:
-    """Label → uuid of every control among the messages a new client is sent."""
-    made = (m for m in replayed if str(m["type"]).startswith("Gui") and "props" in m)
-    return {str(m["props"].get("label") or ""): str(m["uuid"]) for m in made}
+    """Label → uuid of every control among the messages a new client is sent; small buttons by their words."""
+    found = {}
+    for message in replayed:
+        if str(message["type"]).startswith("Gui") and "props" in message:
+            names = [message["props"].get("label")]
+            if message["type"] == "GuiButtonGroupMessage":
+                names += message["props"]["options"]
+            found.update({str(name): str(message["uuid"]) for name in names if name})
+    return found
 
 
 def backlog(client: Client, seconds: float = 2.0) -> list[dict[str, Any]]:

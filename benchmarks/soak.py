@@ -1,0 +1,53 @@
+"""Benchmarks: ``make soak``: the long runs: an hour of walk at 8× before two browsers, and rough handling.
+
+``python benchmarks/soak.py [--minutes N] [--json]``: N minutes of clock in all (15 unless told: an hour
+of walk at 8× takes 7.5 of them, rough handling the other half).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
+
+from benchmarks import handling, hour
+from benchmarks.bench import machine, measure
+from benchmarks.figures import table
+
+USUAL_MINUTES = 15.0
+LEAST_MINUTES, MOST_MINUTES = 1.0, 58.0
+
+
+def main() -> int:
+    """Run both parts and tell."""
+    parser = argparse.ArgumentParser(prog="soak.py", description="The long runs, one table.")
+    parser.add_argument("--minutes", type=float, default=USUAL_MINUTES, help="of clock, in all")
+    parser.add_argument("--json", action="store_true", help="one JSON object instead of the tables")
+    options = parser.parse_args()
+    if not LEAST_MINUTES <= options.minutes <= MOST_MINUTES:
+        parser.error(f"--minutes {options.minutes:g}: expected {LEAST_MINUTES:g} to {MOST_MINUTES:g}")
+    half_s = 30.0 * options.minutes
+    parts = {
+        f"{8 * half_s / 60:.0f} minutes of walk at 8×": hour.hour(half_s),
+        f"{half_s / 60:.1f} minutes of rough handling": handling.handling(half_s),
+    }
+    found = {}
+    for name, section in parts.items():
+        found[name] = measure(name, section)
+        if not options.json:
+            print("\n".join(table(name, found[name])), flush=True)
+    if options.json:
+        told = {
+            name: [f._asdict() | {"verdict": f.verdict} for f in figures] for name, figures in found.items()
+        }
+        print(json.dumps(told))
+    else:
+        print(machine())
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
