@@ -36,6 +36,8 @@ from app.warm import warm_up
 log = logging.getLogger(__name__)
 
 FRAME_S = 1 / 60
+#: A sample that comes this long before or after a frame is due is drawn at once.
+EARLY_S = 0.006
 #: Between looks at the folder of profiles.
 PROFILES_S = 2.0
 #: A message stays this long.
@@ -71,6 +73,7 @@ class Viewer:
         self._orders: asyncio.Queue[m.Order] = asyncio.Queue()
         self._work = asyncio.Event()  # the session wants something re-estimated
         self._stop = asyncio.Event()
+        self._fresh = asyncio.Event()  # there is something that no frame has shown
         # two for a search, one so that a slider never waits for it
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
         self._status = m.Status(source.info, m.Link.WAITING, replay=True, profiles=profiles.names())
@@ -134,6 +137,7 @@ class Viewer:
                 self._take_order(m.Order(item, "replay", time.monotonic_ns()))
             else:
                 self._session.take(item)
+                self._fresh.set()
                 self._last_sample_s = time.monotonic()
 
     async def _prepare(self) -> None:
@@ -196,6 +200,7 @@ class Viewer:
             if job is not None:
                 track = await loop.run_in_executor(self._workers, job.run)
                 self._session.adopt(job, track)
+                self._fresh.set()
                 if self._session.wanted is not None:
                     self._work.set()
 
@@ -249,15 +254,23 @@ class Viewer:
     # --- out ---------------------------------------------------------------------------------------
 
     async def _draw(self, scene: Scene) -> None:
-        """Show the present sixty times a second; a fault in drawing is logged and never ends the walk."""
+        """Show the present sixty times a second, each time as a sample comes, so that it is shown fresh.
+
+        Without one it is drawn all the same. A fault in drawing is logged and never ends the walk.
+        """
+        due = time.monotonic()
         while True:
-            began = time.monotonic()
+            with contextlib.suppress(TimeoutError):
+                async with asyncio.timeout(2 * EARLY_S):
+                    await self._fresh.wait()
             try:
                 scene.draw(self._session.snapshot(), self._status_now())
             except Exception:
                 log.exception("drawing failed")
                 await asyncio.sleep(1.0)
-            await asyncio.sleep(max(0.001, FRAME_S - (time.monotonic() - began)))
+            due = max(due + FRAME_S, time.monotonic())
+            await asyncio.sleep(max(0.001, due - EARLY_S - time.monotonic()))
+            self._fresh.clear()
 
     def _status_now(self) -> m.Status:
         now = time.monotonic()
