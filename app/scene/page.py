@@ -54,6 +54,7 @@ class Scene:
         now = time.monotonic()
         self._follow(self._walkers.draw(snapshot), min(now - self._drawn_at, LONGEST_STEP_S))
         self._drawn_at = now
+        self._server.flush()  # the shoe need not wait for words and graphs
         if now >= self._next_graph:
             self._next_graph = now + GRAPH_S
             self.panel.show_graphs(snapshot)
@@ -73,8 +74,9 @@ class Scene:
     def _follow(self, places: list[Vector], elapsed_s: float) -> None:
         if not self._view["follow"] or not places:
             return
-        place = in_view(self._glide.towards(middle(places), elapsed_s))
-        private.force_pose(self._root, NED_WXYZ, place)
+        centre = self._glide.towards(middle(places), elapsed_s)
+        private.force_pose(self._root, NED_WXYZ, in_view(centre))
+        self._ground.reach(centre)
 
     def _set_view(self, name: str, on: bool) -> None:
         self._view[name] = on
