@@ -1,0 +1,125 @@
+"""Intake, and what a track tells of a foot."""
+
+from __future__ import annotations
+
+import math
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app.blocks import BLOCK
+from app.motion import Role, Sample, Vector
+from app.settings import Settings
+from app.tracks import SensorStore, Track
+from tests.estimator.walks import foot, one_by_one, rows_of
+
+REST: Vector = (0.0, 0.0, -9.8)
+ZERO: Vector = (0.0, 0.0, 0.0)
+
+
+def sample(ns: int, force: Vector = REST, rate: Vector = ZERO, field: Vector | None = None) -> Sample:
+    return Sample("foot", 0, ns, ns, force, rate, field)
+
+
+def test_intake_keeps_what_is_later_and_counts_the_rest() -> None:
+    store = SensorStore("foot", Role.FOOT)
+    taken = [store.take(sample(ns)) for ns in (100, 200, 200, 150, 300)]
+    assert taken == [True, True, False, False, True]
+    assert store.dropped == {"repeated time": 1, "time went backward": 1}
+    assert [store.time_ns(i) for i in range(store.samples.end)] == [0.0, 100.0, 200.0]
+
+
+@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e6, -1e200])
+@pytest.mark.parametrize("place", [0, 1, 2])
+def test_what_no_sensor_reads_is_dropped(bad: float, place: int) -> None:
+    store = SensorStore("foot", Role.FOOT)
+    broken: Vector = (bad if place == 0 else 1.0, bad if place == 1 else 1.0, bad if place == 2 else 1.0)
+    assert not store.take(sample(1, force=broken))
+    assert not store.take(sample(1, rate=broken))
+    assert store.dropped == {"not a finite number": 2}
+    assert store.take(sample(1, field=broken))
+    block, at = store.samples.block(0)
+    assert all(math.isnan(x) for x in block[at, 7:10])
+
+
+extreme = st.floats(allow_nan=True, allow_infinity=True)
+
+
+@given(st.lists(st.tuples(*[extreme] * 9), max_size=30), st.booleans())
+def test_no_sample_makes_a_row_that_is_not_finite(readings: list[tuple[float, ...]], compass: bool) -> None:
+    store = SensorStore("foot", Role.FOOT)
+    track = Track("t", Settings(magnetometer=compass, still_window_s=0.05, gain_swing=1.0))
+    for i, values in enumerate(readings):
+        if store.take(sample(i * 20_000_000, values[:3], values[3:6], values[6:9])):
+            track.advance("foot", store.samples)
+    for foot_track in track.feet.values():
+        rows = rows_of(foot_track.tracker)
+        assert all(math.isfinite(x) for x in rows.ravel())
+
+
+def test_stamps_are_exact_however_far_from_zero() -> None:
+    store = SensorStore("foot", Role.FOOT)
+    start = 1_763_769_600_000_000_001
+    for i in range(3):
+        store.take(sample(start + i * 5_000_001))
+    assert store.time_ns(2) == 10_000_002.0
+
+
+def test_rate_and_the_row_at_a_time() -> None:
+    store = SensorStore("foot", Role.FOOT)
+    assert store.rate_hz() == 0.0
+    for i in range(BLOCK + 100):
+        store.take(sample(i * 10_000_000))
+    assert store.rate_hz() == pytest.approx(100.0)
+    assert store.row_at(-1.0) == 0
+    assert store.row_at(1.0) == 100
+    assert store.row_at(1.001) == 101
+    assert store.row_at(1e9) == BLOCK + 100
+    store.samples.drop_oldest()
+    assert store.row_at(0.0) == BLOCK
+
+
+def test_a_view_tells_the_last_stride_and_standing() -> None:
+    samples = foot("strides=10&rate_hz=100&end_s=4")
+    store, track = SensorStore("foot", Role.FOOT), Track("t", Settings())
+    for taken in one_by_one(samples):
+        store.take(taken)
+        track.advance("foot", store.samples)
+        if store.samples.end == 900:
+            walking = track.view({"foot": store}, {}).feet[0]
+    assert walking.speed_mps == pytest.approx(1.2, abs=0.05)
+    assert walking.cadence_spm == pytest.approx(120.0, abs=3.0)
+    assert walking.error_m is None
+    standing = track.view({"foot": store}, {}).feet[0]
+    assert (standing.speed_mps, standing.cadence_spm) == (0.0, 0.0)
+    assert standing.strides == 10
+    assert standing.to_start_m == pytest.approx(12.0, abs=0.1)
+    assert len(standing.footprints) == 10
+    assert standing.footprints[-1].position_n == pytest.approx(standing.position_n, abs=1e-9)
+
+
+def test_the_newest_stride_is_provisional_until_its_update() -> None:
+    samples = foot("strides=4&rate_hz=100")
+    store, track = SensorStore("foot", Role.FOOT), Track("t", Settings())
+    for i, taken in enumerate(one_by_one(samples)):
+        store.take(taken)
+        track.advance("foot", store.samples)
+        view = track.view({"foot": store}, {}).feet[0]
+        tracker = track.feet["foot"].tracker
+        assert bool(len(view.trail.provisional)) == (tracker.settled_end < tracker.rows.end)
+        if i == 300:
+            break
+
+
+def test_the_trail_breaks_at_a_gap_only_if_the_foot_jumped() -> None:
+    """It never does: position is kept across a gap, and no line joins the two sides."""
+    store, track = SensorStore("foot", Role.FOOT), Track("t", Settings())
+    for taken in one_by_one(foot("strides=10&rate_hz=100")):
+        if not 4.6e9 < taken.device_ns < 6e9:
+            store.take(taken)
+            track.advance("foot", store.samples)
+    view = track.view({"foot": store}, {}).feet[0]
+    assert len(track.feet["foot"].tracker.segments) == 1
+    segments = view.trail.growing
+    assert max(math.dist(a, b) for a, b in segments.tolist()) < 0.2
