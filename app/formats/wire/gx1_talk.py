@@ -27,7 +27,7 @@ FACTORY = {44: 64, 122: 1, 130: 10000, 132: 0, 230: 8500, 232: 2000, 238: 16, 24
 #: The same, sped up to 333 Hz at 115200 baud, as four drivers do.
 FASTEST = FACTORY | {44: 21, 238: 4, 240: 10, 242: 250, 246: 3}
 
-_STOP = b"\x10\x00\x00"
+STOP = b"\x10\x00\x00"
 _CLEAR = 0.5  # of g or of a matrix element: enough to tell a sign
 _STREAMS = (0x01, 0x02, 0x03, 0x04, 0x05, 0x07, 0x0A, 0x0B, 0x0C, 0x0D, 0x0E, 0x12, 0x31)
 
@@ -37,24 +37,24 @@ _STREAMS = (0x01, 0x02, 0x03, 0x04, 0x05, 0x07, 0x0A, 0x0B, 0x0C, 0x0D, 0x0E, 0x
 
 def start_up(command: int = QUATERNION) -> Script[Gx1Setup]:
     """Stop, ask who it is, read its calibration, settle signs (hold it still), stream ``command``."""
-    yield Ask(_STOP, "stopping its stream", timeout_s=1.0, quiet_s=0.05)
-    if (yield Ask(_STOP, "waiting for a GX1", _reply(0x10, b"\x00\x00"), 1.0)) is None:
+    yield Ask(STOP, "stopping its stream", timeout_s=1.0, quiet_s=0.05)
+    if (yield Ask(STOP, "waiting for a GX1", reply(0x10, b"\x00\x00"), 1.0)) is None:
         raise RefusedError("no 3DM-GX1 answers: check port, baud rate (38400, 115200 or 19200) and power")
     notes: list[str] = []
-    firmware = _word((yield Ask(b"\xf0", "reading the firmware version", _reply(0xF0))))
-    serial = _word((yield Ask(b"\xf1", "reading the serial number", _reply(0xF1))))
+    firmware = _word((yield Ask(b"\xf0", "reading the firmware version", reply(0xF0))))
+    serial = _word((yield Ask(b"\xf1", "reading the serial number", reply(0xF1))))
     words: dict[int, int] = {}
     for address in (130, 230, 232, 238, 240, 242, 246):
-        answer = yield Ask(bytes([0x28, 0, address]), f"reading EEPROM {address}", _reply(0x28))
+        answer = yield Ask(bytes([0x28, 0, address]), f"reading EEPROM {address}", reply(0x28))
         if answer is not None:
             words[address] = _word(answer) or 0
-    matrix = yield Ask(b"\x0b", "settling its signs: hold it still", _reply(0x0B))
-    vectors = yield Ask(b"\x03", "settling its signs: hold it still", _reply(0x03))
-    quaternion = yield Ask(b"\x05", "settling its signs: hold it still", _reply(0x05))
+    matrix = yield Ask(b"\x0b", "settling its signs: hold it still", reply(0x0B))
+    vectors = yield Ask(b"\x03", "settling its signs: hold it still", reply(0x03))
+    quaternion = yield Ask(b"\x05", "settling its signs: hold it still", reply(0x05))
     gyro_gain, accel_gain, mag_gain = _gains(words, notes)
     reports_gravity = _reports_gravity(matrix, vectors, accel_gain, notes)
     earth_to_body = _earth_to_body(matrix, quaternion, notes)
-    if (yield Ask(bytes([0x10, 0, command]), "starting its stream", _reply(0x10), 1.0)) is None:
+    if (yield Ask(bytes([0x10, 0, command]), "starting its stream", reply(0x10), 1.0)) is None:
         raise RefusedError("the 3DM-GX1 answers but does not start to stream: switch it off and on")
     return Gx1Setup(
         accel_gain,
@@ -75,7 +75,7 @@ def version(number: int) -> str:
     return f"{number // 1000}.{number % 1000 // 100}.{number % 100:02d}"
 
 
-def _reply(command: int, begins: bytes = b"") -> FindAnswer:
+def reply(command: int, begins: bytes = b"") -> FindAnswer:
     """Finds a whole, sound reply, whatever stream it stands in."""
 
     def find(data: bytes) -> tuple[int, int] | None:

@@ -66,7 +66,7 @@ def start_up(rate_hz: float = 200.0) -> Script[MipSetup]:
 
 
 def _ask(descriptor_set: int, command: int, data: bytes, what: str) -> Ask:
-    return Ask(packet(descriptor_set, (command, data)), what, _answer(descriptor_set, command), 0.5)
+    return Ask(packet(descriptor_set, (command, data)), what, acknowledged(descriptor_set, command), 0.5)
 
 
 def _format(generation: int, decimation: int, optional: list[int]) -> Ask:
@@ -77,7 +77,7 @@ def _format(generation: int, decimation: int, optional: list[int]) -> Ask:
     return _ask(THREE_DM, 0x0F if generation == 7 else 0x08, head + layout, "choosing its messages")
 
 
-def _answer(descriptor_set: int, command: int) -> FindAnswer:
+def acknowledged(descriptor_set: int, command: int) -> FindAnswer:
     """Finds the packet of the same set that acknowledges the command, or refuses it."""
 
     def find(data: bytes) -> tuple[int, int] | None:

@@ -52,13 +52,7 @@ class Frames:
     def feed(self, data: bytes) -> list[bytes]:
         """The packets that ``data`` completes, in order; the same however the stream is cut."""
         self.counters.bytes_fed += len(data)
-        return self._scan(self._pending + data, ended=False)
-
-    def flush(self) -> list[bytes]:
-        """The packets inside what is pending, given that nothing more comes; nothing stays pending."""
-        return self._scan(self._pending, ended=True)
-
-    def _scan(self, data: bytes, ended: bool) -> list[bytes]:
+        data = self._pending + data
         counters, find, size, check = self.counters, self._find, self._size, self._check
         packets: list[bytes] = []
         self.breaks.clear()
@@ -68,7 +62,7 @@ class Frames:
             self._broken |= start > at
             at = start
             waits = length == UNKNOWN_YET or at + length > len(data)
-            if length > self._largest or (waits and (ended or len(data) - at >= self._largest)):
+            if length > self._largest or (waits and len(data) - at >= self._largest):
                 length = NO_PACKET
             elif waits:
                 break

@@ -1,0 +1,408 @@
+"""Heart: text lines as hobby boards print them: columns by header, ``name:value`` pairs, or JSON.
+
+Lines have no checksum (but ``$…*hh`` has), so a line is believed only when the end of the line before
+it was seen: the rest of a line joined in the middle could pass for a row. Units come from the header or
+from the user; force and time are otherwise told by the numbers, the rate's unit never can be at rest and is
+then assumed to be deg/s. Until they are settled, rows are kept and given late.
+Axes: taken as z up, x ahead: say axes= otherwise.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Callable, Mapping
+from itertools import pairwise
+from statistics import median
+
+from app.formats.mounting import Axes
+from app.formats.saturation import RANGES, Range
+from app.formats.units import G_MPS2
+from app.formats.wire.columns import UNITS, Columns, find_columns, is_unit, spelt
+from app.formats.wire.making import NED, Z_UP, Maker, Taker, scaled
+from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
+from app.formats.wire.ticks import ArrivalClock, DeviceClock
+from app.motion import InputError, Quaternion, Sample, Vector
+
+FASTEST_HZ = 1000.0
+BAUDS = (115200, 9600, 921600, 460800, 230400, 57600, 38400)
+NATIVE = "#moves,v1"
+
+_LONGEST = 1024
+_TEXT = bytes([9, 10, 13, *range(32, 127), *range(128, 256)])
+_CONTROL = bytes(byte for byte in range(256) if byte not in _TEXT)
+_KEPT = 50  # rows to settle units by
+_TICKS_NS = {"s": 10**9, "sec": 10**9, "ms": 10**6, "us": 1000, "µs": 1000, "μs": 1000, "ns": 1}
+_NATIVE_COLUMNS = ["seq", "t", "ax", "ay", "az", "gx", "gy", "gz", "mx", "my", "mz"]
+_NATIVE_KEYS = {"acc": "force", "gyr": "rate", "mag": "field", "t": "time"}
+_CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d*)?)")
+_LETTERS = re.compile(r"\$?[A-Za-z]+")
+
+Row = tuple[Columns, list[str], int]  # its columns, cells and arrival
+
+
+def frames() -> Frames:
+    """The lines of a stream, an empty one included; control characters make a line rubbish."""
+    return Frames(
+        find_first(_TEXT), _size, lambda line: len(line.translate(None, _CONTROL)) == len(line), _LONGEST
+    )
+
+
+def _size(data: bytes, at: int) -> int:
+    end = data.find(b"\n", at, at + _LONGEST)
+    if end < 0:
+        return UNKNOWN_YET if len(data) - at < _LONGEST else NO_PACKET
+    return end + 1 - at
+
+
+class LinesDecoder:
+    """Samples out of text lines.
+
+    ``columns`` names them where no header does; ``units`` gives any of ``force``, ``rate``,
+    ``field``, ``time`` that the header does not. A quaternion is taken as device axes into
+    ``earth``, w first as named. Raises ``InputError`` for columns or units that it does not know.
+    """
+
+    def __init__(
+        self,
+        sensor: str,
+        axes: Axes = Z_UP,
+        columns: str | None = None,
+        units: Mapping[str, str] | None = None,
+        full_scale: Range = RANGES["csv"],
+        rate_hz: float | None = None,
+        earth: Quaternion = NED,
+    ) -> None:
+        self.notes: list[str] = []
+        self._frames = frames()
+        self.counters = self._frames.counters
+        self._maker = Maker(sensor, axes, full_scale, earth)
+        self._said = {kind: spelt(unit) for kind, unit in (units or {}).items()}
+        for kind, unit in self._said.items():
+            if kind not in ("force", "rate", "field", "time") or not is_unit(kind, unit):
+                raise InputError(
+                    f"unit {kind}={unit}: expected units of force, rate, field or time, such as force=g"
+                )
+        self._columns = None if columns is None else find_columns(columns.split(","))
+        if columns is not None and self._columns is None:
+            raise InputError(f"columns={columns}: expected names with ax,ay,az and gx,gy,gz among them")
+        self._named: dict[tuple[str, ...], Columns | None] = {}
+        self._line_seen = False
+        self._units: dict[str, str] = {}  # settled
+        self._factors = (1.0, 1.0, 1.0)
+        self._kept: list[Row] = []
+        self._clock: DeviceClock | None = None
+        self._arrival = ArrivalClock(rate_hz)
+        self._whole = False  # the clock counts whole milli- or microseconds
+        self._count: int | None = None
+
+    def feed(self, data: bytes, host_ns: int) -> list[Sample]:
+        """The samples that ``data``, arrived at ``host_ns``, completes; a datagram of lines is such data."""
+        samples = []
+        for i, line in enumerate(self._frames.feed(data)):
+            follows = self._line_seen and i not in self._frames.breaks
+            self._line_seen = True
+            row = self._row(line.decode("utf-8", "replace").strip(), follows, host_ns)
+            if row is not None:
+                samples += self._take(row)
+        return samples
+
+    # --- a line into a row ---
+
+    def _row(self, line: str, follows: bool, host_ns: int) -> Row | None:
+        if not line:
+            return None
+        if line.startswith("{"):
+            names, cells = _object(line)
+        elif line.startswith("#"):
+            self._comment(line)
+            return None
+        else:
+            checked = _unwrapped(line)
+            if checked is None:
+                self.counters.bad_checksum += 1
+                return None
+            names, cells = _pairs(_cells(checked))
+            header = find_columns(cells) if not names else None
+            if header is not None:
+                self._columns, self._units = header, {}
+                return None
+            if not follows or not checked.isascii():
+                self.counters.dropped += 1
+                return None
+        columns = self._by_name(tuple(names)) if names else self._columns
+        if columns is None or len(cells) != columns.count:
+            self.counters.unknown += 1
+            if not self._columns and not names:
+                self._note(
+                    "no header seen yet: reset the board so that it prints its header, or give columns="
+                )
+            return None
+        return columns, cells, host_ns
+
+    def _by_name(self, names: tuple[str, ...]) -> Columns | None:
+        if names not in self._named:
+            if len(self._named) >= 16:  # a device has few layouts; rubbish must not be remembered
+                self._named.clear()
+            self._named[names] = find_columns(names)
+        return self._named[names]
+
+    def _comment(self, line: str) -> None:
+        if not line.startswith(NATIVE):
+            return
+        self._columns = find_columns(_NATIVE_COLUMNS)
+        for part in line.split(",")[2:]:
+            key, _, unit = part.partition("=")
+            kind = _NATIVE_KEYS.get(key, "")
+            if kind and is_unit(kind, spelt(unit)):
+                self._said.setdefault(kind, spelt(unit))
+
+    # --- a row into a sample ---
+
+    def _take(self, row: Row) -> list[Sample]:
+        if self._units:
+            return self._read(row)
+        columns = row[0]
+        known = self._said | columns.units
+        self._kept.append(row)
+        needs_time = "time" not in known and columns.time is not None
+        if ("force" not in known or needs_time) and len(self._kept) < _KEPT:
+            return []
+        kept, self._kept = self._kept, []
+        settled = self._settle(known, kept)
+        if settled is None:
+            self.counters.dropped += len(kept)
+            return []
+        self._units = settled
+        self._factors = (
+            UNITS["force"][settled["force"]],
+            UNITS["rate"][settled["rate"]],
+            UNITS["field"][settled["field"]],
+        )
+        return [sample for each in kept for sample in self._read(each)]
+
+    def _settle(self, known: Mapping[str, str], kept: list[Row]) -> dict[str, str] | None:
+        """All four units; None where the force at rest fits none."""
+        units = {kind: unit for kind, unit in known.items() if is_unit(kind, unit)}
+        if "force" not in units:
+            forces = [v for columns, cells, _ in kept if (v := _triple(cells, columns.force)) is not None]
+            unit = force_unit(median(math.hypot(*v) for v in forces)) if forces else None
+            if unit is None:
+                self._note(
+                    "the unit of the accelerometer cannot be told: hold the sensor still, or give its unit"
+                )
+                return None
+            units["force"] = unit
+            self._note(f"accelerometer in {unit}: told by its reading at rest")
+        if "rate" not in units:
+            units["rate"] = "dps"
+            self._note("gyroscope assumed in deg/s: its header does not say")
+        if "field" not in units:
+            units["field"] = "ut"
+            self._note("magnetometer assumed in µT: its header does not say")
+        if "time" not in units:
+            units["time"] = time_unit(
+                [cells[columns.time] for columns, cells, _ in kept if columns.time is not None]
+            )
+            self._note(f"time in {units['time']}: told by its steps")
+        return units
+
+    def _read(self, row: Row) -> list[Sample]:
+        columns, cells, host_ns = row
+        force, rate = _triple(cells, columns.force), _triple(cells, columns.rate)
+        field = None if columns.field is None else _triple(cells, columns.field)
+        sample = None
+        if force is not None and rate is not None:
+            self._count_lost(columns, cells)
+            device_ns = self._stamp(columns, cells, host_ns)
+            if device_ns is not None:
+                f, w, m = self._factors
+                field = None if field is None else scaled(field, m)
+                q = _quad(cells, columns.orientation)
+                sample = self._maker.make(device_ns, host_ns, scaled(force, f), scaled(rate, w), field, 0, q)
+        self.counters.dropped += sample is None
+        return [] if sample is None else [sample]
+
+    def _stamp(self, columns: Columns, cells: list[str], host_ns: int) -> int | None:
+        if columns.time is None:
+            return self._arrival.stamp(host_ns)
+        tick_ns = _TICKS_NS[self._units["time"]]
+        cell = cells[columns.time]
+        whole = cell.isascii() and cell.isdigit() and len(cell) <= 20 and tick_ns in (1000, 10**6)
+        ticks = int(cell) if whole else _nanoseconds(cell, tick_ns)
+        if ticks is None:
+            return None
+        if self._clock is None:  # whole milli- and microseconds count in 32 bits and wrap
+            self._clock = DeviceClock(tick_ns, 32) if whole else DeviceClock(1, 64)
+            self._whole = whole
+        return self._clock.stamp(ticks, host_ns) if whole == self._whole else None
+
+    def _count_lost(self, columns: Columns, cells: list[str]) -> None:
+        if columns.seq is None or not (cells[columns.seq].isascii() and cells[columns.seq].isdigit()):
+            return
+        count = int(cells[columns.seq][:20])
+        if self._count is not None and 0 < count - self._count < 1 << 16:
+            self.counters.lost += count - self._count - 1
+        self._count = count
+
+    def _note(self, sentence: str) -> None:
+        if sentence not in self.notes:
+            self.notes.append(sentence)
+
+
+def readable(line: bytes) -> bool:
+    """Whether a whole line reads like a sensor's: a header, named values, or six numbers."""
+    text = line.decode("utf-8", "replace").strip()
+    if text.startswith("{"):
+        return find_columns(_object(text)[0]) is not None
+    names, cells = _pairs(_cells(_unwrapped(text) or ""))
+    if find_columns(names or cells) is not None:
+        return True
+    return sum(_number(cell) is not None for cell in cells) >= 6
+
+
+def force_unit(rest: float) -> str | None:
+    """The unit in which a still accelerometer reads this."""
+    for unit, expected in (("g", 1.0), ("m/s2", G_MPS2), ("mg", 1000.0)):
+        if abs(rest / expected - 1.0) < 0.2:
+            return unit
+    return None
+
+
+def time_unit(cells: list[str]) -> str:
+    """The unit of a time column by its median step; s where it does not tell."""
+    times = [value for cell in cells if (value := _number(cell)) is not None]
+    steps = [after - before for before, after in pairwise(times) if after > before]
+    step = median(steps) if steps else 0.0
+    return "s" if step < 0.5 else "ms" if step < 900 else "us" if step < 900_000 else "ns"
+
+
+def _number(cell: str) -> float | None:
+    if "_" in cell:  # Python would read 1_0 as 10
+        return None
+    try:
+        return float(cell)
+    except ValueError:
+        return None
+
+
+def _nanoseconds(cell: str, tick_ns: int) -> int | None:
+    """A time in whole nanoseconds, without passing through a float where it is decimal or h:m:s."""
+    clock = _CLOCK.fullmatch(cell)
+    if clock is not None:
+        return round((int(clock[1]) * 3600 + int(clock[2]) * 60 + float(clock[3])) * 1e9)
+    whole, _, fraction = cell.partition(".")
+    if (whole + fraction).isdigit() and cell.isascii() and len(cell) <= 40:
+        part = int(fraction or "0") * tick_ns / float(10 ** len(fraction))
+        return int(whole or "0") * tick_ns + round(part)
+    value = _number(cell)
+    return round(value * tick_ns) if value is not None and abs(value) < 1e18 else None
+
+
+def _triple(cells: list[str], places: tuple[int, int, int]) -> Vector | None:
+    i, j, k = places
+    try:
+        v = (float(cells[i]), float(cells[j]), float(cells[k]))
+    except ValueError:
+        return None
+    return None if "_" in cells[i] + cells[j] + cells[k] else v
+
+
+def _quad(cells: list[str], places: tuple[int, int, int, int] | None) -> Quaternion | None:
+    values = [] if places is None else [_number(cells[place]) for place in places]
+    w, x, y, z = values if len(values) == 4 else (None, None, None, None)
+    return None if w is None or x is None or y is None or z is None else (w, x, y, z)
+
+
+def _cells(line: str) -> list[str]:
+    """Cells by the first separator it has: comma, semicolon, tab, spaces; a trailing one ends nothing."""
+    for separator in ",;\t":
+        if separator in line:
+            return [cell.strip() for cell in line.rstrip().removesuffix(separator).split(separator)]
+    return line.split()
+
+
+def _unwrapped(line: str) -> str | None:
+    """A line without ``IMU,`` or ``$IMU,…*hh`` around it; None if that checksum is wrong."""
+    if line.startswith("$") and "*" in line:
+        line, _, given = line.rpartition("*")
+        total = 0
+        for byte in line[1:].encode():
+            total ^= byte
+        if given.strip().upper() != f"{total:02X}":
+            return None
+    head, _, rest = line.partition(",")
+    return rest if _is_prefix(head, rest) else line
+
+
+def _is_prefix(head: str, rest: str) -> bool:
+    """A word before numbers is a prefix; before words it is a column's name."""
+    return _LETTERS.fullmatch(head) is not None and _number(rest.partition(",")[0]) is not None
+
+
+def _pairs(cells: list[str]) -> tuple[list[str], list[str]]:
+    """Names and values of ``name:value`` cells; no names where they are none."""
+    pairs = [cell.split(":") for cell in cells]
+    if all(len(pair) == 2 and pair[0] and not pair[0][0].isdigit() for pair in pairs):
+        return [pair[0] for pair in pairs], [pair[1].strip() for pair in pairs]
+    return [], cells
+
+
+def _object(line: str) -> tuple[list[str], list[str]]:
+    """Names and values of a flat JSON object; nothing where it is none."""
+    try:
+        read = json.loads(line, parse_int=str, parse_float=str)
+    except (ValueError, RecursionError):
+        return ["?"], []
+    if not isinstance(read, dict):
+        return ["?"], []
+    return list(read), [value if isinstance(value, str) else "" for value in read.values()]
+
+
+class LinesEncoder:
+    """Samples as lines: a header that says every unit, then rows; or one JSON object a line.
+
+    Six decimals. What every row has is chosen once: the field and the quaternion, or not.
+    """
+
+    def __init__(
+        self, axes: Axes = Z_UP, style: str = "csv", with_field: bool = True, with_orientation: bool = False
+    ) -> None:
+        self._taker = Taker(axes, RANGES["csv"])
+        self._json = style == "json"
+        self._names = ["t_us", *(f"a{axis}_mps2" for axis in "xyz"), *(f"g{axis}_radps" for axis in "xyz")]
+        self._parts: list[Callable[[Sample], Vector | Quaternion]] = [self._taker.force, self._taker.rate]
+        if with_field:
+            self._names += [f"m{axis}_ut" for axis in "xyz"]
+            self._parts.append(self._taker.field)
+        if with_orientation:
+            self._names += ["qw", "qx", "qy", "qz"]
+            self._parts.append(self._taker.orientation)
+        self._begun = self._json
+
+    def encode(self, sample: Sample) -> bytes:
+        """The sample's line, and before the first the header."""
+        numbers = [f"{number:.6f}" for part in self._parts for number in part(sample)]
+        cells = [str(round(sample.device_ns / 1000)), *numbers]
+        if self._json:
+            inside = ",".join(f'"{name}":{cell}' for name, cell in zip(self._names, cells, strict=True))
+            return b"{" + inside.encode() + b"}\n"
+        header = "" if self._begun else ",".join(self._names) + "\r\n"
+        self._begun = True
+        return f"{header}{','.join(cells)}\r\n".encode()
+
+
+class LinesDevice:
+    """A board that prints: it takes nothing; its header comes once, at power-up."""
+
+    def __init__(self, axes: Axes = Z_UP, style: str = "csv") -> None:
+        self._encoder = LinesEncoder(axes, style)
+
+    def receive(self, _: bytes) -> bytes:
+        """It does not listen."""
+        return b""
+
+    def measure(self, sample: Sample) -> bytes:
+        """The line of a new measurement."""
+        return self._encoder.encode(sample)
