@@ -1,0 +1,69 @@
+"""``process``: the same steps as live, told as contract.md says."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+from app import batch
+from app.session import Session
+from app.settings import Settings
+from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of
+from tests.test_session import fed, main_rows
+
+KEYS = {"recording", "samples", "dropped_rows", "duration_s", "rate_hz", "estimator_s", "settings", "feet"}
+FOOT_KEYS = {
+    "strides", "distance_m", "end_ned_m", "closure_m", "closure_pct", "height_range_m", "stance_fraction",
+}  # fmt: skip
+
+
+def test_the_summary_has_every_key_and_the_trackers_figures() -> None:
+    told = batch.summary(batch.process("sim:walk?path=eight&rate_hz=50&noise=1", PAPERS))
+    assert set(told) >= KEYS
+    samples = foot("path=eight&rate_hz=50&noise=1")
+    tracker = estimate(samples)
+    rows = rows_of(tracker)
+    assert told["samples"] == len(samples)
+    assert told["rate_hz"] == pytest.approx(50.0)
+    assert told["duration_s"] == pytest.approx((len(samples) - 1) / 50.0)
+    feet = told["feet"]
+    assert isinstance(feet, dict)
+    figures = feet["foot"]
+    assert set(figures) >= FOOT_KEYS
+    assert figures["strides"] == tracker.stride_count
+    assert figures["distance_m"] == tracker.distance_m == sum(s.length_m for s in tracker.strides)
+    assert figures["end_ned_m"] == rows[-1, :3].tolist()
+    assert figures["closure_m"] == math.hypot(*figures["end_ned_m"][:2])
+    assert figures["closure_pct"] == 100 * figures["closure_m"] / figures["distance_m"]
+    assert figures["height_range_m"] == rows[:, 2].max() - rows[:, 2].min()
+    assert figures["stance_fraction"] == (rows[:, 10] == 0).mean()
+    json.dumps(told, allow_nan=False)
+
+
+def test_a_foot_that_stood_has_no_percentage() -> None:
+    tracker = estimate(foot("strides=1&still_s=5"), threshold_radps=20.0)
+    assert tracker.distance_m == 0.0
+    assert batch.foot_summary(tracker)["closure_pct"] is None
+
+
+def test_process_is_the_live_session_to_the_bit() -> None:
+    done = batch.process("sim:walk?feet=2&strides=10&noise=1", PAPERS)
+    samples = [s for sensor in done.recording.sensors for s in one_by_one(sensor)]
+    session = fed(Session(PAPERS), sorted(samples, key=lambda s: s.device_ns))
+    for sensor in ("left", "right"):
+        assert rows_of(done.trackers[sensor]).tobytes() == main_rows(session, sensor).tobytes()
+
+
+def test_settings_are_all_told() -> None:
+    chosen = Settings(gain_stance=2.0, magnetometer=True)
+    told = batch.summary(batch.process("sim:walk?strides=2", chosen))["settings"]
+    assert isinstance(told, dict)
+    assert Settings(**told) == chosen
+
+
+def test_the_lines_for_a_person_name_each_foot() -> None:
+    text = "\n".join(batch.lines(batch.process("sim:walk?feet=2&strides=4", PAPERS)))
+    assert "left: 5 strides" in text
+    assert "right: 4 strides" in text
