@@ -26,7 +26,6 @@ class Theme:
 
     sky: Rgb
     horizon: Rgb
-    floor: Rgb
     cell: Rgb
     section: Rgb
     ink: Rgb  # compass and start mark
@@ -34,11 +33,11 @@ class Theme:
 
 
 DARK = Theme(
-    sky=(13, 17, 23), horizon=(30, 40, 54), floor=(22, 28, 37), cell=(66, 80, 98), section=(104, 124, 150),
+    sky=(13, 17, 23), horizon=(30, 40, 54), cell=(66, 80, 98), section=(104, 124, 150),
     ink=(150, 164, 182), accent=(240, 110, 90),
 )  # fmt: skip
 LIGHT = Theme(
-    sky=(226, 234, 243), horizon=(248, 250, 252), floor=(240, 243, 247), cell=(214, 220, 228),
+    sky=(226, 234, 243), horizon=(248, 250, 252), cell=(214, 220, 228),
     section=(176, 187, 200), ink=(92, 106, 124), accent=(206, 66, 48),
 )  # fmt: skip
 

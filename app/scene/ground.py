@@ -1,4 +1,4 @@
-"""Edge, scene: floor, metre grid, compass rose, start mark, light and sky."""
+"""Edge, scene: metre grid, compass rose, start mark, light."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.scene.colours import Rgb, Theme, blend, theme
+from app.motion import Vector
+from app.scene.colours import Rgb, blend, theme
 from app.scene.shoe import SENSOR_HEIGHT_M
+
+REACH_M, BOLD_M, PIECE_M = 20, 5, 5
 
 #: Strokes of the letters on the floor, x right and y up, one unit high.
 GLYPHS: dict[str, tuple[tuple[tuple[float, float], ...], ...]] = {
@@ -84,36 +87,63 @@ def ruler() -> NDArray[np.float32]:
     return np.concatenate([strokes(f"{m} m", (m - 0.2, 0.4), 0.16) for m in (1, 2, 5, 10, 15, 20)])
 
 
-def sky(colours: Theme) -> NDArray[np.uint8]:
-    """The picture behind everything: [n, 1…, 3], darker above, the horizon's colour below."""
-    part = np.clip(np.linspace(0.0, 1.6, 256), 0, 1)[:, None] ** 1.3
-    column = np.array(colours.sky) * (1 - part) + np.array(colours.horizon) * part
-    return np.broadcast_to(np.rint(column)[:, None], (256, 16, 3)).astype(np.uint8)
+def fading(segments: NDArray[np.float32], ink: Rgb, into: Rgb) -> NDArray[np.uint8]:
+    """A colour for each end [k, 2, 3]: full in the middle, the sky's at the edge of the grid."""
+    away = np.clip(np.linalg.norm(segments[..., :2], axis=-1, keepdims=True) / REACH_M, 0.0, 1.0)
+    mixed = np.array(ink) * (1.0 - away) + np.array(into) * away
+    # viser takes colours of single ends for linear light and would brighten them
+    result: NDArray[np.uint8] = np.rint(255.0 * (mixed / 255.0) ** 2.2).astype(np.uint8)
+    return result
+
+
+def grid(every_m: int, but_not_m: int | None = None) -> NDArray[np.float32]:
+    """Lines north and east through a disc round the walker, in pieces that can fade: [k, 2, 3]."""
+    lines = []
+    for across in range(-REACH_M, REACH_M + 1, every_m):
+        if but_not_m is not None and across % but_not_m == 0:
+            continue
+        half = math.sqrt(REACH_M**2 - across**2)
+        along = np.linspace(-half, half, max(2, 2 * round(half / PIECE_M) + 1))
+        line = np.stack([along, np.full(len(along), float(across))], axis=1)
+        pieces = np.stack([line[:-1], line[1:]], axis=1)
+        lines += [pieces, pieces[..., ::-1]]
+    return on_floor(np.concatenate(lines), above_m=0.0)
 
 
 class Ground:
-    """All that never moves, under ``/ned``."""
+    """All that never moves, under ``/ned``; only the grid comes along, by whole bold squares.
+
+    Light to draw on a tablet or without a graphics card: lines, no shader over the whole floor, no
+    shadow maps (measured in software: 1.6 → 6 pictures a second). The sky is the page's own style.
+    """
 
     def __init__(self, scene: viser.SceneApi, dark: bool) -> None:
         self._scene = scene
-        scene.configure_default_lights(True, cast_shadow=True)
+        self._at = (0.0, 0.0, 0.0)
+        scene.configure_default_lights(True, cast_shadow=False)
         self.recolour(dark)
 
     def recolour(self, dark: bool) -> None:
         """Draw it in the theme's colours."""
         colours = theme(dark)
-        scene = self._scene
-        scene.set_background_image(sky(colours), format="png")
-        # The grid's upper side is its plane's +z: turned over, since down is +z here.
-        scene.add_grid(
-            "/ned/ground", plane="xy", wxyz=(0.0, 1.0, 0.0, 0.0), position=(0.0, 0.0, SENSOR_HEIGHT_M),
-            infinite_grid=True, cell_size=1.0, cell_color=colours.cell, cell_thickness=1.2, section_size=5.0,
-            section_color=colours.section, section_thickness=1.4, fade_distance=45.0, fade_strength=1.2,
-            plane_color=colours.floor, plane_opacity=0.55, shadow_opacity=0.55 if dark else 0.28,
-        )  # fmt: skip
+        self._frame = self._scene.add_frame("/ned/ground", show_axes=False, position=self._at)
+        for name, segments, ink, thickness in (
+            ("/ned/ground/metres", grid(1, BOLD_M), colours.cell, 1.0),
+            ("/ned/ground/bold", grid(BOLD_M), colours.section, 1.6),
+        ):
+            faded = fading(segments, ink, colours.horizon)
+            self._scene.add_line_segments(name, segments, faded, thickness=thickness, thickness_units="screen")
         self._draw("/ned/compass", rose(), colours.ink, 1.6)
         self._draw("/ned/compass_north", north(), colours.accent, 2.4)
-        self._draw("/ned/ruler", ruler(), blend(colours.ink, colours.floor, 0.3), 1.4)
+        self._draw("/ned/ruler", ruler(), blend(colours.ink, colours.horizon, 0.3), 1.4)
+
+    def reach(self, centre: Vector) -> None:
+        """Keep the grid round the walker; its lines stay on whole metres."""
+        north_m, east_m = (BOLD_M * round(c / BOLD_M) for c in centre[:2])
+        at = (float(north_m), float(east_m), 0.0)
+        if at != self._at:
+            self._at = at
+            self._frame.position = at
 
     def _draw(self, name: str, segments: NDArray[np.float32], ink: Rgb, thickness: float) -> None:
         self._scene.add_line_segments(name, segments, ink, thickness=thickness, thickness_units="screen")

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 
 from app.scene import private
+from app.scene.colours import css, theme
 
 HERE = Path(__file__).parent
 
@@ -15,5 +16,8 @@ def head(keys: dict[str, tuple[str, str]], resets: list[str]) -> str:
     presses = {key: private.press(control, value) for key, (control, value) in keys.items()}
     small = ",".join(f'[id="{uuid}"]' for uuid in resets)
     style = (HERE / "page.css").read_text(encoding="utf-8").replace("[data-reset]", f":is({small})")
+    for name, dark in (("dark", True), ("light", False)):
+        sky, horizon = css(theme(dark).sky), css(theme(dark).horizon)
+        style = style.replace(f"sky-{name}", f"linear-gradient({sky}, {horizon} 65%)")
     script = (HERE / "page.js").read_text(encoding="utf-8").replace("KEY_PRESSES", json.dumps(presses))
     return f"<title>Stridescope</title><style>{style}</style><script>{script}</script>"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from pathlib import Path
 
@@ -11,6 +12,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.motion import Quaternion, Role, Vector
+from app.rotation import from_yaw
 from app.scene import private
 from app.scene.colours import FOOT, Rgb, shade
 
@@ -42,6 +44,39 @@ def paint(colour: Rgb) -> dict[str, Rgb]:
     }  # fmt: skip
 
 
+class Shadow:
+    """A soft dark patch on the floor under a shoe: three flat soles, each wider and fainter."""
+
+    def __init__(self, scene: viser.SceneApi, name: str, role: Role) -> None:
+        self.frame = scene.add_frame(name, show_axes=False)
+        self._last: tuple[float, Vector] | None = None
+        outline, faces = sole(role is Role.LEFT)
+        centre = outline[:1]
+        for i, (wider, opacity) in enumerate(((1.3, 0.10), (1.1, 0.18), (0.92, 0.30))):
+            layer = centre + (outline - centre) * wider - np.array([0.0, 0.0, 0.001 * i], np.float32)
+            scene.add_mesh_simple(
+                f"{name}/{i}", layer, faces, color=(0, 0, 0), opacity=opacity,
+                side="double", cast_shadow=False, receive_shadow=False,
+            )  # fmt: skip
+
+    def lie(self, position: Vector, yaw_rad: float, floor_down_m: float) -> None:
+        """Under a shoe that is at ``position``, on a floor at ``floor_down_m``."""
+        place = (position[0], position[1], floor_down_m - 0.005)
+        if (yaw_rad, place) != self._last:
+            private.force_pose(self.frame, from_yaw(yaw_rad), place)
+            self._last = (yaw_rad, place)
+
+    def remove(self) -> None:
+        """Take it off the page."""
+        self.frame.remove()
+
+
+def yaw(q: Quaternion) -> float:
+    """Which way the toe points: NED yaw of a unit quaternion, rad."""
+    w, x, y, z = q
+    return math.atan2(2.0 * (w * z + x * y), 1.0 - 2.0 * (y * y + z * z))
+
+
 class Shoe:
     """One shoe under a frame ``name``; a ghost is one colour and lets the light through."""
 
@@ -55,7 +90,7 @@ class Shoe:
             scene.add_mesh_simple(
                 f"{name}/{part}", vertices, faces, color=colours[part] if ghost is None else ghost,
                 opacity=None if ghost is None else 0.32, flat_shading=part == "sensor", side="double",
-                cast_shadow=ghost is None, receive_shadow=ghost is None,
+                cast_shadow=False, receive_shadow=False,
             )  # fmt: skip
 
     def pose(self, q_nb: Quaternion, position: Vector) -> None:

@@ -11,7 +11,7 @@ from app.motion import FootView, Role, Snapshot, Trail, Vector
 from app.scene.colours import CANDIDATE, FOOT, TRUTH, Rgb, blend
 from app.scene.footprints import Footprints
 from app.scene.guard import drawable, unit
-from app.scene.shoe import Shoe
+from app.scene.shoe import SENSOR_HEIGHT_M, Shadow, Shoe, yaw
 from app.scene.trails import NOTHING, Look, TrailNodes
 
 APART_M = 0.2  # between the origins of two feet that nothing links
@@ -41,12 +41,19 @@ def look(role: Role) -> Look:
     return Look(FOOT[role], blend(FOOT[role], (255, 255, 255), 0.45), 3.5)
 
 
+def floor(foot: FootView) -> float:
+    """How far down the floor is: where the last finite print was made, which on stairs is not 0."""
+    level = foot.footprints[-1].position_n[2] if foot.footprints else 0.0
+    return (level if math.isfinite(level) else 0.0) + SENSOR_HEIGHT_M
+
+
 class Walker:
     """One foot on the page."""
 
     def __init__(self, scene: viser.SceneApi, name: str, role: Role, offset: Vector) -> None:
         self._scene, self._name, self._role, self._offset = scene, name, role, offset
         self.shoe = Shoe(scene, f"/ned/{name}", role)
+        self._shadow = Shadow(scene, f"/ned/shadow/{name}", role)
         self._trail = TrailNodes(scene, name, look(role), offset)
         self._prints = Footprints(scene, name, role, offset)
         self._ghost: Shoe | None = None
@@ -59,8 +66,9 @@ class Walker:
         self._prints.draw(foot.footprints)
         if not drawable(foot):
             return None
-        place = self._moved(foot.position_n)
-        self.shoe.pose(unit(foot.q_nb), place)
+        place, turn = self._moved(foot.position_n), unit(foot.q_nb)
+        self.shoe.pose(turn, place)
+        self._shadow.lie(place, yaw(turn), floor(foot))
         return place
 
     def draw_ghost(self, foot: FootView | None) -> None:
@@ -96,7 +104,7 @@ class Walker:
     def remove(self) -> None:
         """Take the foot and all that is its off the page."""
         self._drop_ghost()
-        for part in (self.shoe, self._trail, self._prints, self._truth_trail):
+        for part in (self.shoe, self._shadow, self._trail, self._prints, self._truth_trail):
             if part is not None:
                 part.remove()
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from app.rotation import rotate
 from app.scene import ground
-from app.scene.colours import theme
-from app.scene.page import NED_WXYZ, in_view
+from app.scene.colours import css, theme
+from app.scene.page import NED_WXYZ, Scene, in_view
 from app.scene.shoe import SENSOR_HEIGHT_M
 
 
@@ -43,8 +43,28 @@ def test_an_f_would_not_be_mirrored() -> None:
     assert np.ptp(spine[:, 0]) > 0.9
 
 
-def test_the_sky_goes_from_dark_to_the_horizon() -> None:
+def test_the_grid_is_on_whole_metres_and_fades_into_the_sky() -> None:
+    segments = np.concatenate([ground.grid(1, ground.BOLD_M), ground.grid(ground.BOLD_M)])
+    flat = segments[..., :2]
+    whole = np.isclose(flat, np.rint(flat), atol=1e-5).all(axis=1)  # each line keeps one coordinate
+    assert whole.any(axis=1).all()
+    ends = np.linalg.norm(flat, axis=-1)
+    assert ends.max() <= ground.REACH_M + 1e-4
+    colours = ground.fading(segments, (255, 255, 255), (0, 0, 0))
+    assert colours[ends > ground.REACH_M - 1e-3].max() == 0
+    assert colours[ends < 1.0].min() > 200
+    assert len(segments) < 700
+
+
+def test_the_grid_comes_along_by_whole_squares(scene: Scene) -> None:
+    node = scene._server.scene.get_handle_by_name("/ned/ground")
+    assert node is not None
+    for centre, at in (((2.4, -2.4, 1.0), (0, 0, 0)), ((203.0, -7.6, 0.3), (205, -10, 0))):
+        scene._ground.reach(centre)
+        assert tuple(node.position) == at
+
+
+def test_the_sky_is_in_the_style(scene: Scene) -> None:
     for dark in (True, False):
-        picture = ground.sky(theme(dark))
-        assert tuple(picture[0, 0]) == theme(dark).sky
-        assert tuple(picture[-1, 0]) == theme(dark).horizon
+        assert css(theme(dark).sky) in scene.head
+        assert css(theme(dark).horizon) in scene.head
