@@ -140,29 +140,32 @@ class Tracker:
                 self._happen(samples, self._events[k])
 
     def _happen(self, samples: Blocks, event: Floats) -> None:
-        first, last = int(event[Event.LIFT_ROW]) + 1, int(event[Event.ROW]) + 1
-        kind = int(event[Event.HAPPENED])
-        if kind & (s.SWING_FOUND | s.FLICKER | s.STRIDE):
+        kind, lift, _, row, *_ = event.tolist()
+        happened, first, last = int(kind), int(lift) + 1, int(row) + 1
+        if happened & (s.SWING_FOUND | s.FLICKER | s.STRIDE):
             for rows, number in self.rows.pieces(first, last):
                 piece, place = samples.block(number)
                 correct(rows, number, piece[place : place + len(rows)], event)
-        if kind & s.STRIDE:
+        if happened & s.STRIDE:
             self._add_stride(event)
-        if kind & s.SEGMENT:
+        if happened & s.SEGMENT:
             self.segments.append(last - 1)
             self._contact = None
 
     def _add_stride(self, event: Floats) -> None:
-        lift, contact = max(int(event[Event.LIFT_ROW]), self.rows.start), int(event[Event.CONTACT_ROW])
+        _, lift_row, contact_row, _, lift_ns, swing_s, *_ = event.tolist()
+        lift, contact, lift_s = max(int(lift_row), self.rows.start), int(contact_row), lift_ns * 1e-9
         lifts = [lift_above_line(rows, event) for rows, _ in self.rows.pieces(lift, contact + 1)]
-        lift_s = float(event[Event.LIFT_NS]) * 1e-9
-        north, east, down = event[Event.START : Event.START + 3].tolist()  # the row at the lift may be gone
-        lifted = contact_at(self._row(lift), lift_s)._replace(position_n=(north, east, down))
-        before = self._contact or lifted
-        self._contact = contact_at(self._row(contact), lift_s + float(event[Event.SWING_S]))
+        before = self._contact or self._lifted(event, lift, lift_s)
+        self._contact = contact_at(self._row(contact), lift_s + swing_s)
         stride = stride_between(before, self._contact, event, self.stride_count + 1, max(lifts))
         self.strides.append(stride)
         self.distance_m += stride.length_m
+
+    def _lifted(self, event: Floats, lift: int, lift_s: float) -> Contact:
+        """Where a segment's first swing began."""
+        north, east, down = event[Event.START : Event.START + 3].tolist()  # the row at the lift may be gone
+        return contact_at(self._row(lift), lift_s)._replace(position_n=(north, east, down))
 
     def _row(self, number: int) -> Floats:
         block, place = self.rows.block(number)
