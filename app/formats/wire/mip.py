@@ -62,7 +62,7 @@ def packet(descriptor_set: int, *fields: tuple[int, bytes]) -> bytes:
 
 
 def fields_of(whole: bytes) -> Fields:
-    """Descriptor and data of a packet's fields; stops at the first that does not fit."""
+    """Descriptor and data of a packet's fields, up to one that does not fit."""
     found: Fields = []
     at, end = 4, len(whole) - 2
     while at + 2 <= end:

@@ -93,7 +93,7 @@ class WitmotionDecoder:
 
     def _close(self, host_ns: int, whole: bool) -> list[Sample]:
         burst, self._burst = self._burst, {}
-        if whole:
+        if whole or self._kinds is None:
             self._kinds = frozenset(burst)
         if ACCEL not in burst and GYRO not in burst:
             self.counters.unknown += len(burst)

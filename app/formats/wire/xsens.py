@@ -78,8 +78,18 @@ def _size(data: bytes, at: int) -> int:
 
 
 def holds(whole: bytes) -> bool:
-    """Whether everything after the first byte sums to 0."""
-    return sum(whole) & 0xFF == 0xFA
+    """Whether everything after the first byte sums to 0, and measurements fill their message.
+
+    The sum is of eight bits only: it alone would let one damaged message in 256 pass.
+    """
+    return sum(whole) & 0xFF == 0xFA and (whole[2] != MTDATA2 or _fills(data_of(whole)))
+
+
+def _fills(data: bytes) -> bool:
+    at = 0
+    while at + 3 <= len(data):
+        at += 3 + data[at + 2]
+    return at == len(data)
 
 
 class XsensDecoder:
