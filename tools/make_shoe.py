@@ -28,16 +28,23 @@ def curve(*points: tuple[float, float]) -> PchipInterpolator:
     return PchipInterpolator(x, y)
 
 
-LATERAL = curve((0, 0.001), (0.004, 0.009), (0.012, 0.0155), (0.03, 0.0225), (0.1, 0.031), (0.2, 0.034), (0.35, 0.035), (0.5, 0.040),
-                (0.65, 0.048), (0.75, 0.049), (0.86, 0.041), (0.94, 0.024), (0.985, 0.008), (1, -0.004))  # fmt: skip
-MEDIAL = curve((0, -0.001), (0.004, 0.008), (0.012, 0.015), (0.03, 0.0220), (0.1, 0.031), (0.2, 0.032), (0.35, 0.029), (0.5, 0.031),
-               (0.65, 0.041), (0.75, 0.046), (0.86, 0.044), (0.94, 0.033), (0.985, 0.017), (1, 0.004))  # fmt: skip
+LATERAL = curve(
+    (0, 0.001), (0.004, 0.009), (0.012, 0.0155), (0.03, 0.0225), (0.1, 0.031), (0.2, 0.034), (0.35, 0.035),
+    (0.5, 0.040), (0.65, 0.048), (0.75, 0.049), (0.86, 0.041), (0.94, 0.024), (0.985, 0.008), (1, -0.004),
+)  # fmt: skip
+MEDIAL = curve(
+    (0, -0.001), (0.004, 0.008), (0.012, 0.015), (0.03, 0.0220), (0.1, 0.031), (0.2, 0.032), (0.35, 0.029),
+    (0.5, 0.031), (0.65, 0.041), (0.75, 0.046), (0.86, 0.044), (0.94, 0.033), (0.985, 0.017), (1, 0.004),
+)  # fmt: skip
 BOTTOM = curve((0, 0.007), (0.08, 0.001), (0.18, 0), (0.68, 0), (0.82, 0.004), (0.93, 0.013), (1, 0.022))
 MIDSOLE_TOP = curve((0, 0.036), (0.25, 0.034), (0.5, 0.030), (0.75, 0.028), (0.9, 0.031), (1, 0.037))
-UPPER_TOP = curve((0, 0.086), (0.025, 0.099), (0.07, 0.104), (0.2, 0.108), (0.38, 0.114), (0.46, 0.111), (0.6, 0.094),
-                  (0.74, 0.075), (0.86, 0.064), (0.94, 0.056), (0.985, 0.046), (1, 0.038))  # fmt: skip
-OPENING = curve((0, 0), (0.03, 0), (0.045, 0.55), (0.11, 0.97), (0.25, 1.1), (0.34, 0.98), (0.41, 0.55),
-                (0.435, 0), (1, 0))  # fmt: skip
+UPPER_TOP = curve(
+    (0, 0.086), (0.025, 0.099), (0.07, 0.104), (0.2, 0.108), (0.38, 0.114), (0.46, 0.111), (0.6, 0.094),
+    (0.74, 0.075), (0.86, 0.064), (0.94, 0.056), (0.985, 0.046), (1, 0.038),
+)  # fmt: skip
+OPENING = curve(
+    (0, 0), (0.03, 0), (0.045, 0.55), (0.11, 0.97), (0.25, 1.1), (0.34, 0.98), (0.41, 0.55), (0.435, 0), (1, 0)
+)  # fmt: skip
 
 
 def stations(count: int, start: float = 0.0, stop: float = 1.0) -> Floats:
@@ -140,12 +147,12 @@ def facing(mesh: trimesh.Trimesh, sign: float) -> trimesh.Trimesh:
     return mesh
 
 
-def upper() -> list[trimesh.Trimesh]:
+def upper() -> trimesh.Trimesh:
     """Both sides, joined where they meet."""
     s = np.unique(np.concatenate([stations(22), np.linspace(0.03, 0.435, 15)]))
     mesh = trimesh.util.concatenate([side(s, 1.0), side(s, -1.0)])
     mesh.merge_vertices(digits_vertex=5)
-    return [mesh]
+    return mesh
 
 
 def rim() -> Floats:
@@ -246,9 +253,9 @@ def to_body(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
 def shoe() -> dict[str, trimesh.Trimesh]:
     """The right shoe's parts by name."""
     parts = {
-        "outsole": outsole(), "midsole": midsole(), "upper": upper()[0], "toe_cap": toe_cap(), "stripe": stripe(),
-        "collar": collar(), "lining": lining(), "tongue": tongue(), "laces": laces(), "sensor": sensor(),
-        "light": light(),
+        "outsole": outsole(), "midsole": midsole(), "upper": upper(), "toe_cap": toe_cap(), "stripe": stripe(),
+        "collar": collar(), "lining": lining(), "tongue": tongue(), "laces": laces(),
+        "sensor": sensor(), "light": light(),
     }  # fmt: skip
     return {name: to_body(mesh) for name, mesh in parts.items()}
 

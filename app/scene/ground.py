@@ -132,7 +132,7 @@ class Ground:
             ("/ned/ground/bold", grid(BOLD_M), colours.section, 1.6),
         ):
             faded = fading(segments, ink, colours.horizon)
-            self._scene.add_line_segments(name, segments, faded, thickness=thickness, thickness_units="screen")
+            self._draw(name, segments, faded, thickness)
         self._draw("/ned/compass", rose(), colours.ink, 1.6)
         self._draw("/ned/compass_north", north(), colours.accent, 2.4)
         self._draw("/ned/ruler", ruler(), blend(colours.ink, colours.horizon, 0.3), 1.4)
@@ -145,5 +145,7 @@ class Ground:
             self._at = at
             self._frame.position = at
 
-    def _draw(self, name: str, segments: NDArray[np.float32], ink: Rgb, thickness: float) -> None:
+    def _draw(
+        self, name: str, segments: NDArray[np.float32], ink: Rgb | NDArray[np.uint8], thickness: float
+    ) -> None:
         self._scene.add_line_segments(name, segments, ink, thickness=thickness, thickness_units="screen")

@@ -80,12 +80,14 @@ def foot(t_s: float, role: Role = Role.FOOT, turn_per_m: float = 0.06, name: str
     count, swing = progress(t_s)
     velocity = tuple((a - b) / 1e-3 for a, b in zip(place, before, strict=True))
     return FootView(
-        sensor=role.value, role=role, t_s=t_s, position_n=place, velocity_n=(velocity[0], velocity[1], velocity[2]),
+        sensor=role.value, role=role, t_s=t_s, position_n=place,
+        velocity_n=(velocity[0], velocity[1], velocity[2]),
         q_nb=from_yaw_pitch_roll(yaw, pitch, 0.0), phase=GaitPhase.SWING if swing > 0 else GaitPhase.STANCE,
         levelled=True, strides=count, distance_m=count * STRIDE_M, speed_mps=STRIDE_M / STRIDE_S,
         cadence_spm=120 / STRIDE_S, height_m=-place[2], to_start_m=math.hypot(place[0], place[1]),
         trail=trail(t_s, turn_per_m, name),
-        footprints=tuple(footprint(i, turn_per_m) for i in range(max(1, count - 20), count + 1)), error_m=0.123,
+        footprints=tuple(footprint(i, turn_per_m) for i in range(max(1, count - 20), count + 1)),
+        error_m=0.123,
     )  # fmt: skip
 
 
@@ -94,13 +96,17 @@ def graph(t_s: float, ahead_s: float = 0.0) -> Graph:
     walked = at + ahead_s
     swing = np.array([progress(t)[1] for t in walked])
     active = swing > 0
-    rate = np.where(active, 6.5 * np.sin(np.pi * np.clip(swing, 0, 1)) ** 0.7, 0.15 + 0.1 * np.sin(9 * at) ** 2)
+    rate = np.where(
+        active, 6.5 * np.sin(np.pi * np.clip(swing, 0, 1)) ** 0.7, 0.15 + 0.1 * np.sin(9 * at) ** 2
+    )
     speed = np.where(active, 4.6 * np.sin(np.pi * np.clip(swing, 0, 1)) ** 2, 0.0)
     height = np.array([-pose(t)[0][2] for t in walked])
     return Graph(at, rate, active.astype(float), speed, height)
 
 
-def snapshot(t_s: float, two: bool = False, candidate: bool = False, truth: bool = False, **changes: object) -> Snapshot:
+def snapshot(
+    t_s: float, two: bool = False, candidate: bool = False, truth: bool = False, **changes: object
+) -> Snapshot:
     roles = (Role.LEFT, Role.RIGHT) if two else (Role.FOOT,)
     starts = {role: t_s + (STRIDE_S / 2 if role is Role.RIGHT else 0) for role in roles}
     feet = tuple(foot(starts[role], role, name=role.value) for role in roles)
@@ -113,7 +119,9 @@ def snapshot(t_s: float, two: bool = False, candidate: bool = False, truth: bool
         candidate=TrackView("candidate", tuned, ghost) if candidate else None, truth=known,
         candidate_settings=tuned if candidate else settings, pending=False, apply_at_once=False, undo_depth=1,
         slots={"A": settings}, slot_now="A",
-        changes=(Change(1200, 0, "browser 2", "gain_stance 1.05 → 1.4"), Change(2400, 0, "browser 1", "undo")),
+        changes=(
+            Change(1200, 0, "browser 2", "gain_stance 1.05 → 1.4"), Change(2400, 0, "browser 1", "undo"),
+        ),
         graphs={role.value: graph(t_s, starts[role] - t_s) for role in roles},
         health={role.value: Health(100.2, int(t_s * 100), {"time went backward": 2}, 0, 1) for role in roles},
         hindsight_from_s=0.0, stored_bytes=12_400_000, budget_bytes=512_000_000, epoch=0,

@@ -12,7 +12,8 @@ from app.scene.page import Scene
 
 DRAWN = """(node) => {
   const t = window.__viserTestpoints, s = window.__viserSceneTree;
-  return t && s && node in s.getState() && t.rendererInfo.render.triangles > 0 && t.rendererInfo.render.frame > 2;
+  const drawn = t && t.rendererInfo.render;
+  return drawn && s && node in s.getState() && drawn.triangles > 0 && drawn.frame > 2;
 }"""
 NO_TOASTS = ".mantine-Notifications-root{display:none!important}"
 PATIENCE_MS = 90_000
@@ -31,7 +32,9 @@ def door_to(scene: Scene) -> Iterator[str]:
         door.stop()
 
 
-def open_page(browser: Browser, address: str, size: tuple[int, int] = (1280, 800), node: str = "/ned/foot") -> Page:
+def open_page(
+    browser: Browser, address: str, size: tuple[int, int] = (1280, 800), node: str = "/ned/foot"
+) -> Page:
     """A page on which ``node`` has been drawn."""
     page = browser.new_page(viewport={"width": size[0], "height": size[1]})
     page.goto(f"{address}?fixedDpr=1")

@@ -5,8 +5,8 @@ from dataclasses import replace
 
 import pytest
 
-from app.motion import Change, GaitPhase, Link
-from app.scene import figures
+from app.motion import Change, GaitPhase, Link, Snapshot, Status
+from app.scene import figures, words
 from app.settings import Settings
 from tests.scene import fakes
 from tests.scene.test_words import read
@@ -15,7 +15,7 @@ EVIL = '<img src=x onerror="document.title=1">](javascript:x) **b**'
 OURS = {"div", "span", "b", "i", "small", "label", "table", "tr", "th", "td", "ul", "li"}
 
 
-def everything(snapshot: figures.Snapshot, status: figures.Status) -> str:
+def everything(snapshot: Snapshot, status: Status) -> str:
     return "".join((
         figures.header(status), figures.message(snapshot, status), figures.feet(snapshot),
         figures.source(snapshot, status), figures.log(snapshot, 100.0), figures.position(status),
@@ -61,8 +61,8 @@ def test_a_pose_that_is_no_number_is_said() -> None:
 
 def test_every_figure_has_its_unit() -> None:
     text = read(figures.feet(fakes.snapshot(9.7))).text
-    for words in ("Strides8", "10.80 m", "m/s", "steps/min", "105.7 %", "0.12 m"):
-        assert words in text
+    for said in ("Strides8", "10.80 m", "m/s", "steps/min", "105.7 %", "0.12 m"):
+        assert said in text
 
 
 def test_two_feet_are_said_not_to_be_linked() -> None:
@@ -75,7 +75,7 @@ def test_the_difference_is_the_candidates_minus_the_mains() -> None:
     assert snapshot.candidate is not None
     main, other = snapshot.main.feet[0], snapshot.candidate.feet[0]
     text = read(figures.comparison(snapshot)).text
-    assert figures.words.signed(other.to_start_m - main.to_start_m) + " m" in text
+    assert words.signed(other.to_start_m - main.to_start_m) + " m" in text
     assert "k_s 1.05 → 1.6 1/s" in text
 
 

@@ -1,5 +1,6 @@
 from __future__ import annotations
 
+import itertools
 import math
 
 import pytest
@@ -19,7 +20,7 @@ def test_it_arrives() -> None:
 def test_it_never_shoots_over() -> None:
     glide = Glide()
     path = [glide.towards((1.0, 0.0, 0.0), 1 / 60)[0] for _ in range(300)]
-    assert all(a <= b for a, b in zip(path, path[1:], strict=False))
+    assert all(a <= b for a, b in itertools.pairwise(path))
     assert max(path) <= 1.0
 
 

@@ -28,7 +28,9 @@ def test_the_phase_stays_nought_or_one() -> None:
 
 
 def test_no_samples_yet() -> None:
-    nothing = fakes.graph(1.0)._replace(**dict.fromkeys(("t_s", "statistic", "swing", "speed_mps", "height_m"), np.zeros(0)))
+    nothing = fakes.graph(1.0)._replace(
+        **dict.fromkeys(("t_s", "statistic", "swing", "speed_mps", "height_m"), np.zeros(0))
+    )
     t_s = graphs.times([nothing])
     assert (np.diff(t_s) > 0).all()
     assert not graphs.on_axis(t_s, nothing, "statistic").any()

@@ -9,7 +9,7 @@ from app.scene.page import Scene
 def presses(scene: Scene) -> dict[str, dict[str, object]]:
     found = re.search(r"const presses = (\{.*\});", scene.head)
     assert found
-    return json.loads(found.group(1))  # type: ignore[no-any-return]
+    return json.loads(found.group(1))
 
 
 def test_each_key_presses_a_control_with_a_value_its_rule_allows(scene: Scene) -> None:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import threading
 import time
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
@@ -31,9 +30,9 @@ class Shown:
 
 
 @contextmanager
-def drawing(scene: Scene) -> Iterator[Shown]:
+def drawing(scene: Scene, shown: Shown) -> Iterator[None]:
     """Draw what the test says, as the shell would."""
-    shown, end = Shown(), threading.Event()
+    end = threading.Event()
 
     def draw() -> None:
         while not end.wait(0.05):
@@ -42,31 +41,54 @@ def drawing(scene: Scene) -> Iterator[Shown]:
     thread = threading.Thread(target=draw)
     thread.start()
     try:
-        yield shown
+        yield
     finally:
         end.set()
         thread.join()
 
 
-@pytest.fixture
-def shown(scene: Scene) -> Iterator[Shown]:
-    with drawing(scene) as what:
-        yield what
+class House:
+    """A scene, what it shows, a door, and one page that all tests share: a page costs seconds."""
 
+    def __init__(self, browser: Browser) -> None:
+        self.orders: list[Order] = []
+        self.scene = Scene(self.orders.append)
+        self.shown = Shown()
+        self._browser, self._pages, self.address = browser, list[Page](), ""
 
-@pytest.fixture
-def visit(scene: Scene, shown: Shown, browser: Browser) -> Iterator[Callable[..., Page]]:
-    """Opens pages through a door and closes them."""
-    pages: list[Page] = []
-    with door_to(scene) as address:
+    def open(self) -> Page:
+        """Another browser's page."""
+        self._pages.append(open_page(self._browser, self.address))
+        return self._pages[-1]
 
-        def go(**how: Any) -> Page:
-            pages.append(open_page(browser, address, **how))
-            return pages[-1]
-
-        yield go
-        for page in pages:
+    def close(self) -> None:
+        for page in self._pages:
             page.close()
+        self.scene.close()
+
+
+@pytest.fixture(scope="module")
+def furnished(browser: Browser) -> Iterator[tuple[House, Page]]:
+    house = House(browser)
+    with drawing(house.scene, house.shown), door_to(house.scene) as house.address:
+        yield house, house.open()
+    house.close()
+
+
+@pytest.fixture
+def house(furnished: tuple[House, Page]) -> House:
+    """With nothing asked and a foot at the start."""
+    made, _ = furnished
+    made.shown.snapshot, made.shown.status = fakes.snapshot(0.0), fakes.status()
+    made.scene._set_view("dark", True)
+    time.sleep(0.2)
+    made.orders.clear()
+    return made
+
+
+@pytest.fixture
+def page(furnished: tuple[House, Page]) -> Page:
+    return furnished[1]
 
 
 def blue(page: Page) -> int:
@@ -82,105 +104,123 @@ def orange(page: Page) -> int:
     return int(((red > 110) & (red > 1.15 * green) & (green > 1.6 * low)).sum())
 
 
-def slider(page: Page, uuid: str) -> Any:
-    return page.locator(f'[id="{uuid}"]').first
-
-
 def number_beside(page: Page, uuid: str) -> str:
     return str(page.evaluate(
-        """(id) => document.getElementById(id).parentElement.querySelector('.mantine-NumberInput-input').value""", uuid
+        """(id) => document.getElementById(id).parentElement
+             .querySelector('.mantine-NumberInput-input').value""", uuid
     ))  # fmt: skip
 
 
-def test_the_shoe_is_drawn_and_the_trail_grows(visit: Callable[..., Page], shown: Shown, build_dir: Path) -> None:
-    shown.snapshot = fakes.snapshot(0.0)
-    page = visit()
+def wait_for_node(page: Page, name: str) -> None:
+    page.wait_for_function("(n) => n in window.__viserSceneTree.getState()", arg=name, timeout=PATIENCE_MS)
+
+
+PLACE = "() => window.__viserMutable.nodeRefFromName['/ned/foot'].position.toArray()"
+
+
+def is_at(page: Page, t_s: float) -> bool:
+    return np.allclose(page.evaluate(PLACE), fakes.pose(t_s)[0], atol=1e-6)
+
+
+def test_the_shoe_is_drawn_and_the_trail_grows(house: House, page: Page, build_dir: Path) -> None:
     assert page.title() == "Stridescope"
-    until(lambda: blue(page) > 100, 60)  # the shoe's own pixels: there is no trail yet
-    points = "() => window.__viserSceneTree.getState()['/ned/trail/foot/growing'].message.props.points.byteLength"
+    until(lambda: blue(page) > 100, 90)  # the shoe's own pixels: there is no trail yet
+    points = (
+        "() => window.__viserSceneTree.getState()['/ned/trail/foot/growing'].message.props.points.byteLength"
+    )
     before = page.evaluate(points)
-    shown.snapshot = fakes.snapshot(5.0)
-    page.wait_for_function(f"(before) => ({points})() > before", arg=before, timeout=PATIENCE_MS)
-    place = "() => window.__viserMutable.nodeRefFromName['/ned/foot'].position.toArray()"
-    page.wait_for_function(f"() => ({place})()[0] > 4", timeout=PATIENCE_MS)
-    assert np.allclose(page.evaluate(place), fakes.pose(5.0)[0], atol=1e-6)
-    page.wait_for_timeout(3000)
-    until(lambda: blue(page) > 100, 60)
+    house.shown.snapshot = fakes.snapshot(5.0)
+    until(lambda: is_at(page, 5.0), 90)
+    until(lambda: page.evaluate(points) > before, 90)
+    until(lambda: blue(page) > 100, 90)
     page.screenshot(path=build_dir / "scene_one_foot.png", timeout=PATIENCE_MS)
 
 
-def test_two_feet_two_colours(visit: Callable[..., Page], shown: Shown, build_dir: Path) -> None:
-    shown.snapshot = fakes.snapshot(0.4, two=True)
-    page = visit(size=(1920, 1080), node="/ned/right")
-    until(lambda: blue(page) > 100 and orange(page) > 100, 60)
+def test_two_feet_two_colours(house: House, page: Page, build_dir: Path) -> None:
+    house.shown.snapshot = fakes.snapshot(0.4, two=True)
+    wait_for_node(page, "/ned/right")
+    until(lambda: blue(page) > 100 and orange(page) > 100, 90)
     assert "Feet not linked" in page.inner_text("body")
     page.screenshot(path=build_dir / "scene_two_feet.png", timeout=PATIENCE_MS)
 
 
-def test_a_dragged_slider_makes_a_candidate_and_the_other_browser_agrees(
-    visit: Callable[..., Page], shown: Shown, scene: Scene, orders: list[Order], build_dir: Path
+def test_a_dragged_slider_makes_a_candidate_and_another_browser_agrees(
+    house: House, page: Page, build_dir: Path
 ) -> None:
-    shown.snapshot = fakes.snapshot(9.7)
-    one, two = visit(), visit()
-    gain = scene.panel.tuned()["gain_stance"].id
-    box = slider(one, gain).bounding_box()
+    house.shown.snapshot = fakes.snapshot(9.7)
+    gain = house.scene.panel.tuned()["gain_stance"].id
+    box = page.locator(f'[id="{gain}"]').first.bounding_box()
     assert box
-    one.mouse.move(box["x"] + 0.35 * box["width"], box["y"] + 5)
-    one.mouse.down()
-    one.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 5, steps=3)
-    one.mouse.up()
-    until(lambda: orders)
-    one.wait_for_timeout(500)
-    command = orders[-1].command
+    page.mouse.move(box["x"] + 0.35 * box["width"], box["y"] + 5)
+    page.mouse.down()
+    page.mouse.move(box["x"] + 0.6 * box["width"], box["y"] + 5, steps=3)
+    page.mouse.up()
+    until(lambda: house.orders, 60)
+    page.wait_for_timeout(700)
+    command = house.orders[-1].command
     assert isinstance(command, SetCandidate)
     ((name, value),) = command.changes
     assert name == "gain_stance"
     assert 1.5 < float(value) < 2.1
-    # The session answers with a candidate: both browsers show its ghost and its value.
-    shown.snapshot = fakes.snapshot(
-        9.7, candidate=True, candidate_settings=shown.snapshot.candidate_settings.with_changes({name: value})
-    )
-    for page in (one, two):
-        page.wait_for_function(
-            "() => '/ned/ghost/foot' in window.__viserSceneTree.getState()", timeout=PATIENCE_MS
-        )  # fmt: skip
-        page.get_by_text("Candidate", exact=True).wait_for(timeout=PATIENCE_MS)
-        until(lambda page=page: float(number_beside(page, gain)) == pytest.approx(float(value)))  # type: ignore[misc]
-    two.wait_for_timeout(3000)
-    two.screenshot(path=build_dir / "scene_candidate.png", timeout=PATIENCE_MS)
+    # The session answers with a candidate; a browser that comes only now sees the same.
+    settings = fakes.snapshot(9.7).candidate_settings.with_changes({name: value})
+    house.shown.snapshot = fakes.snapshot(9.7, candidate=True, candidate_settings=settings)
+    late = house.open()
+    for seen in (page, late):
+        wait_for_node(seen, "/ned/ghost/foot")
+        seen.get_by_text("Candidate", exact=True).wait_for(timeout=PATIENCE_MS)
+        assert is_at(seen, 9.7)
+        assert float(number_beside(seen, gain)) == pytest.approx(float(value))
+    # Dropped: both sliders go back.
+    house.shown.snapshot = fakes.snapshot(9.7)
+    for seen in (page, late):
+        until(lambda seen=seen: float(number_beside(seen, gain)) == 1.05, 60)  # type: ignore[misc]
+    late.screenshot(path=build_dir / "scene_late_joiner.png", timeout=PATIENCE_MS)
+    late.close()
 
 
-def test_keys_press_and_typing_does_not(visit: Callable[..., Page], shown: Shown, orders: list[Order]) -> None:
-    shown.snapshot = fakes.snapshot(3.0, candidate=True)
-    page = visit()
+def test_a_candidate_and_the_truth(house: House, page: Page, build_dir: Path) -> None:
+    house.shown.snapshot = fakes.snapshot(2.2, candidate=True, truth=True)
+    for node in ("/ned/ghost/foot", "/ned/trail/foot_ghost/growing", "/ned/trail/foot_truth/growing"):
+        wait_for_node(page, node)
+    page.wait_for_timeout(2000)
+    page.screenshot(path=build_dir / "scene_candidate.png", timeout=PATIENCE_MS)
+
+
+def test_keys_press_and_typing_does_not(house: House, page: Page) -> None:
+    page.locator("canvas[data-engine]").click(position={"x": 300, "y": 100})
     page.keyboard.press("c")
-    until(lambda: orders)
-    assert orders[0].command == ApplyCandidate()
+    until(lambda: house.orders, 60)
+    assert house.orders[0].command == ApplyCandidate()
     page.get_by_text("Source", exact=True).first.click()
     field = page.locator("input.mantine-TextInput-input").last
     field.click()
     page.keyboard.type("crb")
     page.wait_for_timeout(1000)
-    assert len(orders) == 1
+    assert len(house.orders) == 1
     assert field.input_value() == "crb"
+    page.get_by_text("Tune", exact=True).first.click()
 
 
-def test_stale_wins_the_eye_and_markup_stays_text(visit: Callable[..., Page], shown: Shown, build_dir: Path) -> None:
+def test_stale_wins_the_eye_and_markup_stays_text(house: House, page: Page) -> None:
     evil = '<img src=x onerror="document.title=1">'
-    page = visit()
-    shown.status = fakes.status(stale_s=3.2, message=evil)
+    house.shown.status = fakes.status(stale_s=3.2, message=evil)
     page.get_by_text("STALE").wait_for(timeout=PATIENCE_MS)
     assert evil in page.inner_text("body")
     assert page.title() == "Stridescope"
 
 
-def test_a_sweep_is_a_picture_in_light_mode(
-    visit: Callable[..., Page], shown: Shown, scene: Scene, build_dir: Path
-) -> None:
-    shown.snapshot = fakes.snapshot(9.7)
-    shown.status = fakes.status(sweep=fakes.sweep())
-    scene._set_view("dark", False)
-    page = visit()
+def test_graphs_have_the_data(house: House, page: Page) -> None:
+    house.shown.snapshot = fakes.snapshot(31.4)
+    newest = """() => Object.values(window.__viserTestpoints.uplots ?? {}).map(u => {
+      const x = u.chart.data[0]; return x[x.length - 1]; })"""
+    until(lambda: page.evaluate(newest) == pytest.approx([31.4] * 3), 60)
+
+
+def test_a_sweep_is_a_picture_in_light_mode(house: House, page: Page, build_dir: Path) -> None:
+    house.shown.snapshot = fakes.snapshot(9.7)
+    house.shown.status = fakes.status(sweep=fakes.sweep())
+    house.scene._set_view("dark", False)
     page.get_by_text("Gains", exact=True).first.click()
     picture = page.locator(".ss-surface svg")
     picture.wait_for(timeout=PATIENCE_MS)
@@ -189,22 +229,3 @@ def test_a_sweep_is_a_picture_in_light_mode(
     assert box["width"] > 300
     page.wait_for_timeout(1500)
     page.screenshot(path=build_dir / "scene_sweep_light.png", timeout=PATIENCE_MS)
-
-
-def test_graphs_have_the_data(visit: Callable[..., Page], shown: Shown) -> None:
-    shown.snapshot = fakes.snapshot(31.4)
-    page = visit()
-    page.wait_for_selector(".uplot canvas", timeout=PATIENCE_MS)
-    newest = """() => Object.values(window.__viserTestpoints.uplots).map(u => {
-      const x = u.chart.data[0]; return x[x.length - 1]; })"""
-    until(lambda: all(abs(t - 31.4) < 1e-6 for t in page.evaluate(newest)) and len(page.evaluate(newest)) == 3)
-
-
-def test_a_late_joiner_sees_the_present(visit: Callable[..., Page], shown: Shown) -> None:
-    shown.snapshot = fakes.snapshot(31.4)
-    time.sleep(1.0)
-    page = visit()
-    place = "() => window.__viserMutable.nodeRefFromName['/ned/foot'].position.toArray()"
-    until(lambda: np.allclose(page.evaluate(place), fakes.pose(31.4)[0], atol=1e-6))
-    pieces = "() => Object.keys(window.__viserSceneTree.getState()).filter(n => n.includes('/piece_')).length"
-    assert page.evaluate(pieces) == len(shown.snapshot.main.feet[0].trail.pieces)

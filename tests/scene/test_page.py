@@ -42,7 +42,11 @@ def test_one_foot_and_two(scene: Scene) -> None:
     scene.draw(fakes.snapshot(5.0), fakes.status())
     assert {"/ned", "/ned/foot", "/ned/foot/upper", "/ned/ground", "/ned/compass"} <= names(scene)
     scene.draw(fakes.snapshot(5.0, two=True), fakes.status())
-    drawn = {node for node in ("/ned/foot", "/ned/left", "/ned/right") if scene._server.scene.get_handle_by_name(node)}
+    drawn = {
+        node
+        for node in ("/ned/foot", "/ned/left", "/ned/right")
+        if scene._server.scene.get_handle_by_name(node)
+    }
     assert drawn == {"/ned/left", "/ned/right"}
 
 
@@ -76,12 +80,17 @@ def test_what_is_no_number_never_reaches_viser(scene: Scene, bad: float) -> None
     graph = good.graphs["foot"]
     spoiled = {"foot": graph._replace(statistic=np.where(graph.t_s > 5, bad, graph.statistic))}
     shot = with_foot(
-        good, position_n=(bad, 0.0, 0.0), velocity_n=(bad,) * 3, q_nb=(bad,) * 4, distance_m=bad, speed_mps=bad,
+        good, position_n=(bad, 0.0, 0.0), velocity_n=(bad,) * 3, q_nb=(bad,) * 4, distance_m=bad,
+        speed_mps=bad,
         cadence_spm=bad, height_m=bad, to_start_m=bad, error_m=bad, footprints=(print_,),
         trail=Trail((piece,), growing, provisional),
     )  # fmt: skip
     health = {"foot": good.health["foot"]._replace(rate_hz=bad)}
-    ghost = good.candidate._replace(feet=(good.candidate.feet[0]._replace(q_nb=(bad,) * 4),)) if good.candidate else None
+    ghost = (
+        good.candidate._replace(feet=(good.candidate.feet[0]._replace(q_nb=(bad,) * 4),))
+        if good.candidate
+        else None
+    )
     shot = replace(shot, graphs=spoiled, health=health, candidate=ghost, hindsight_from_s=bad)
     scene.draw(shot, fakes.status(position_s=bad, speed=1.0, stale_s=0.0, sweep_progress=0.5))
     messages = private.broadcast_messages(scene._server)
@@ -148,6 +157,10 @@ def test_an_empty_snapshot_draws(scene: Scene) -> None:
 def test_light_and_dark(scene: Scene) -> None:
     for dark in (False, True):
         scene._set_view("dark", dark)
-        themes = [m for m in private.broadcast_messages(scene._server) if type(m).__name__ == "ThemeConfigurationMessage"]
+        themes = [
+            m
+            for m in private.broadcast_messages(scene._server)
+            if type(m).__name__ == "ThemeConfigurationMessage"
+        ]
         assert [m.dark_mode for m in themes] == [dark]
         assert not themes[0].show_share_button

@@ -43,7 +43,9 @@ def test_a_pose_is_sent_whatever_it_was(scene: Scene) -> None:
     private.force_pose(node, (1.0, 0.0, 0.0, 0.0), (100.0, 0.0, 0.0))
     private.force_pose(node, (1.0, 0.0, 0.0, 0.0), (100.0004, 0.0, 0.0))
     assert node.position[0] == 100.0004
-    sent = [m for m in private.broadcast_messages(scene._server) if isinstance(m, _messages.SetPositionMessage)]
+    sent = [
+        m for m in private.broadcast_messages(scene._server) if isinstance(m, _messages.SetPositionMessage)
+    ]
     assert [m.position[0] for m in sent if m.name == "/x"] == [100.0004]
 
 
@@ -61,4 +63,3 @@ def test_two_scenes_have_two_ports(scene: Scene) -> None:
         assert other.get_port() != scene.port
     finally:
         private.close_server(other)
-

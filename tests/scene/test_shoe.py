@@ -74,7 +74,9 @@ def test_small_steps_far_away_are_sent(scene: Scene) -> None:
     sent = []
     for i in range(20):
         drawn.pose(q, (200.0 + 0.0005 * i, 0.0, 0.0))
-        positions = [m for m in private.broadcast_messages(scene._server) if type(m).__name__ == "SetPositionMessage"]
+        positions = [
+            m for m in private.broadcast_messages(scene._server) if type(m).__name__ == "SetPositionMessage"
+        ]
         sent.append(next(m.position[0] for m in positions if m.name == "/ned/far"))
     assert np.allclose(np.diff(sent), 0.0005, atol=1e-9)
 

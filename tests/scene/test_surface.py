@@ -25,7 +25,14 @@ def test_the_best_is_brightest_and_what_failed_is_unknown() -> None:
 
 def test_axes_units_and_the_minimum_are_told() -> None:
     text = surface.picture(fakes.sweep())
-    for words in ("stance gain k_s, 1/s", "swing gain k_d, 1/s", "k_s 1.20 1/s", "k_d 0.15 1/s", "<circle", " m</text>"):
+    for words in (
+        "stance gain k_s, 1/s",
+        "swing gain k_d, 1/s",
+        "k_s 1.20 1/s",
+        "k_d 0.15 1/s",
+        "<circle",
+        " m</text>",
+    ):
         assert words in text
 
 

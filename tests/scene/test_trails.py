@@ -40,7 +40,9 @@ def piece_names(scene: Scene) -> set[str]:
 
 
 def test_a_piece_is_sent_once_and_goes_with_its_key(scene: Scene) -> None:
-    nodes = trails.TrailNodes(scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0))
+    nodes = trails.TrailNodes(
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+    )
     one, two = TrailPiece("one", straight(1.0)), TrailPiece("two", straight(2.0))
     nodes.draw(Trail((one,), EMPTY, EMPTY))
     first = dict(nodes._pieces)
@@ -52,7 +54,9 @@ def test_a_piece_is_sent_once_and_goes_with_its_key(scene: Scene) -> None:
 
 
 def test_what_did_not_change_is_not_sent(scene: Scene) -> None:
-    nodes = trails.TrailNodes(scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0))
+    nodes = trails.TrailNodes(
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+    )
     trail = fakes.trail(20.3)
     nodes.draw(trail)
     before = [id(m) for m in private.broadcast_messages(scene._server)]

@@ -36,7 +36,10 @@ def test_nobodys_text_becomes_markup(text: str) -> None:
 
 
 def test_text_reads_as_typed() -> None:
-    assert read(words.plain("<img src=x onerror=alert(1)> & **bold**")).text == "<img src=x onerror=alert(1)> & **bold**"
+    assert (
+        read(words.plain("<img src=x onerror=alert(1)> & **bold**")).text
+        == "<img src=x onerror=alert(1)> & **bold**"
+    )
 
 
 def test_long_text_is_cut_and_controls_go() -> None:
@@ -63,7 +66,13 @@ def test_units_grow_with_the_distance() -> None:
 
 
 def test_clock() -> None:
-    assert [words.clock(t) for t in (0.04, 59.94, 95.0, 3723.0, math.inf)] == ["0.0 s", "59.9 s", "1:35", "1:02:03", "–"]
+    assert [words.clock(t) for t in (0.04, 59.94, 95.0, 3723.0, math.inf)] == [
+        "0.0 s",
+        "59.9 s",
+        "1:35",
+        "1:02:03",
+        "–",
+    ]
 
 
 def test_percent_of_nothing() -> None:
