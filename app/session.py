@@ -175,11 +175,21 @@ class Session:
         if settings == self.main.settings and (apply or coming is None):
             self.wanted, self._next, self.candidate = None, None, None
             return
-        job = Reestimation(0, settings, {}, {}, apply, order.who, reason, order.host_ns, self.number)
+        job = self._job(order, settings, apply, reason)
         if coming is None or apply:
+            self._pass_over()
             self.wanted, self._next = self._fresh(job), None
         else:
             self._next = job if settings != coming.settings else None
+
+    def _job(self, order: m.Order, settings: Settings, apply: bool, reason: str) -> Reestimation:
+        before = (self._coming or self.main).settings
+        return Reestimation(0, settings, {}, {}, apply, order.who, reason, order.host_ns, self.number, before)
+
+    def _pass_over(self) -> None:
+        """An apply that the next one overtakes has happened all the same: an undo goes back to it."""
+        if self._coming is not None and self._coming.reason != "undo":
+            self._undo.append(self._coming.before)
 
     def _fresh(self, job: Reestimation) -> Reestimation:
         """The same job, for the samples that are here now."""
@@ -188,10 +198,9 @@ class Session:
         return replace(job, number=self._jobs, epoch=self.epoch, stores=stores, bases=self.main.bases())
 
     def _apply_candidate(self, order: m.Order) -> None:
-        why = Reestimation(
-            0, self.candidate_settings, {}, {}, True, order.who, "applied", order.host_ns, self.number
-        )
+        why = self._job(order, self.candidate_settings, True, "applied")
         if self._next is not None:
+            self._pass_over()
             self.wanted, self._next = self._fresh(why), None
         elif self.wanted is not None and not self.wanted.apply:
             w = self.wanted
@@ -200,15 +209,19 @@ class Session:
             self._make_main(self.candidate, why)
 
     def _undo_last(self, order: m.Order) -> None:
-        if self._coming is not None and self._coming.reason != "undo":
-            self.wanted, self._next, self.candidate = None, None, None
+        coming = self._coming
+        if coming is not None and coming.reason != "undo":
+            self.wanted = replace(
+                coming, reason="undo"
+            )  # given up: nothing to go back to but what was before
+            self._want(order, coming.before, True, "undo")
         elif self._undo:
             self._want(order, self._undo.pop(), True, "undo")
 
     def _make_main(self, track: Track, why: Reestimation) -> None:
         if why.reason != "undo":
-            self._undo.append(self.main.settings)
-        what = f"{why.reason}: {self.main.settings.differences(track.settings)}"
+            self._undo.append(why.before)
+        what = f"{why.reason}: {why.before.differences(track.settings)}"
         self._note(m.Change(why.taken, why.host_ns, why.who, what))
         turn_rad = track.settings.start_heading_rad - self.main.settings.start_heading_rad
         for sensor, frozen in self._frozen.items():

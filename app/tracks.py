@@ -242,6 +242,7 @@ class Reestimation:
     reason: str
     host_ns: int
     taken: int  # samples and orders taken when it was asked for
+    before: Settings  # what an undo goes back to
     epoch: int = 0  # of the session when it was given out
 
     def run(self) -> Track:
