@@ -5,10 +5,11 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Iterable
+from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 from app import motion as m
@@ -164,10 +165,20 @@ COMMANDS: list[m.Command] = [
 ]
 
 
-def played(script: list[tuple[int, int]], late: list[bool]) -> Session:
+Script = list[tuple[int, int, bool]]
+
+
+def scripts(commands: int) -> st.SearchStrategy[Script]:
+    """So many samples, then an order, then its work done at once or (True) not yet."""
+    return st.lists(
+        st.tuples(st.integers(0, 120), st.sampled_from(range(commands)), st.booleans()), max_size=8
+    )
+
+
+def played(script: Script) -> Session:
     """Samples and orders, the work done at once or not before the end."""
     session, taken = Session(PAPERS), 0
-    for (count, command), waits in zip(script, late, strict=True):
+    for count, command, waits in script:
         fed(session, WALK[taken : taken + count])
         taken += count
         session.apply(order(COMMANDS[command]))
@@ -179,13 +190,13 @@ def played(script: list[tuple[int, int]], late: list[bool]) -> Session:
 
 
 @settings(max_examples=60)
-@given(st.data())
-def test_main_and_candidate_do_not_depend_on_when_work_is_done(data: st.DataObject) -> None:
-    script = data.draw(
-        st.lists(st.tuples(st.integers(0, 120), st.sampled_from(range(6))), min_size=1, max_size=8)
-    )
-    late = data.draw(st.lists(st.booleans(), min_size=len(script), max_size=len(script)))
-    one, other = played(script, [False] * len(script)), played(script, late)
+@given(scripts(6))
+@example([(99, 0, True), (9, 3, True), (9, 1, True)])
+@example([(99, 0, False), (9, 3, False), (9, 1, False), (9, 3, True), (9, 5, True), (9, 5, True)])
+@example([(99, 0, True), (9, 3, True), (9, 4, True)])
+@example([(99, 0, True), (9, 3, True), (9, 5, True)])
+def test_main_and_candidate_do_not_depend_on_when_work_is_done(script: Script) -> None:
+    one, other = played([(n, command, False) for n, command, _ in script]), played(script)
     assert one.main.settings == other.main.settings
     assert one.candidate_settings == other.candidate_settings
     for _sensor in one.main.feet:
@@ -194,10 +205,9 @@ def test_main_and_candidate_do_not_depend_on_when_work_is_done(data: st.DataObje
 
 
 @settings(max_examples=40)
-@given(st.lists(st.tuples(st.integers(0, 80), st.sampled_from(range(len(COMMANDS)))), max_size=10), st.data())
-def test_any_orders_leave_a_session_whole(script: list[tuple[int, int]], data: st.DataObject) -> None:
-    late = data.draw(st.lists(st.booleans(), min_size=len(script), max_size=len(script)))
-    session = played(script, late)
+@given(scripts(len(COMMANDS)))
+def test_any_orders_leave_a_session_whole(script: Script) -> None:
+    session = played(script)
     snapshot = session.snapshot()
     assert snapshot.pending is False
     for store in session.stores.values():
@@ -247,8 +257,8 @@ def test_an_apply_under_way_survives_a_slider_and_a_restart() -> None:
     assert session.main.settings == Settings(gain_stance=2.0)
     assert session.candidate is not None
     assert session.candidate.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
-    for command in (m.ApplyCandidate(), m.SetCandidate((("gain_swing", 0.5),)), m.RestartHere()):
-        session.apply(order(command))
+    for later in (m.ApplyCandidate(), m.SetCandidate((("gain_swing", 0.5),)), m.RestartHere()):
+        session.apply(order(later))
     assert session.main.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
     assert session.candidate_settings.gain_swing == 0.5
 
@@ -300,8 +310,8 @@ def test_restart_forgets_the_walk_and_keeps_settings_and_sliders() -> None:
 
 
 def test_replaying_the_log_repeats_it_to_the_bit() -> None:
-    script = [(200, 0), (100, 3), (100, 1), (50, 3), (80, 5), (10, 6), (90, 2), (40, 3), (60, 7)]
-    live = played(script, [True, False] * 4 + [True])
+    steps = [(200, 0), (100, 3), (100, 1), (50, 3), (80, 5), (10, 6), (90, 2), (40, 3), (60, 7)]
+    live = played([(count, command, k % 2 == 0) for k, (count, command) in enumerate(steps)])
     again, taken = Session(PAPERS), 0
     for number, what in live.log:
         while again.number < number - 1:
@@ -321,7 +331,9 @@ def test_replaying_the_log_repeats_it_to_the_bit() -> None:
 def frozen(snapshot: m.Snapshot) -> list[bytes]:
     feet = [f for view in (snapshot.main, snapshot.candidate) if view for f in view.feet]
     trails = [f.trail for f in feet] + list(snapshot.truth.values())
-    arrays = [a for t in trails for a in (*(p.segments for p in t.pieces), t.growing, t.provisional)]
+    arrays: list[Any] = [
+        a for t in trails for a in (*(p.segments for p in t.pieces), t.growing, t.provisional)
+    ]
     arrays += [a for graph in snapshot.graphs.values() for a in graph]
     return [a.tobytes() for a in arrays]
 

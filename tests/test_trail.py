@@ -64,7 +64,8 @@ def test_length_is_kept_and_old_pieces_are_coarser_but_near() -> None:
 
 
 def test_pieces_are_few_and_a_key_never_changes_its_content() -> None:
-    builder, seen, most = TrailBuilder("t"), {}, 0
+    seen: dict[str, bytes] = {}
+    builder, most = TrailBuilder("t"), 0
     points = path(400_000)
     for a in range(0, len(points), 2000):
         builder.add(points[a : a + 2000])

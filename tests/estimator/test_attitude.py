@@ -185,7 +185,7 @@ def test_no_gain_is_unstable(gain: float, dt_s: float) -> None:
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_a_full_turn_comes_back_to_plus_or_minus_itself(axis: int) -> None:
-    rate = tuple(2 * PI * (i == axis) for i in range(3))
+    rate: Vector = (2 * PI * (axis == 0), 2 * PI * (axis == 1), 2 * PI * (axis == 2))
     start = from_yaw_pitch_roll(0.3, -0.2, 0.1)
     q = filtered(start, rate, IDENTITY, 0.0, 0.01, 100)
     assert apart(q, start) < 1e-7

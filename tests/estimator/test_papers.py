@@ -143,7 +143,7 @@ def test_nothing_is_integrated_across_a_gap(begin_s: float) -> None:
 
 def segment_of(rows: Floats, dt_s: float, gap_s: float, after: Floats) -> Samples:
     """Forces and rates [n, 6], a gap, and more of them."""
-    t_s = np.arange(len(rows) + len(after)) * dt_s
+    t_s: Floats = np.arange(len(rows) + len(after), dtype=np.float64) * dt_s
     t_s[len(rows) :] += gap_s
     both = np.vstack([rows, after])
     return samples_of(t_s, both[:, :3], both[:, 3:])

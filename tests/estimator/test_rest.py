@@ -49,8 +49,8 @@ def with_rate(samples: Samples, rate: Floats) -> Samples:
     return Samples("foot", samples.role, 0, matrix, samples.saturation)
 
 
-def bias_of(samples: Samples, **changes: float | bool) -> list[float]:
-    state = estimate(samples, **changes).state
+def bias_of(samples: Samples, bias_from_rest: bool = True) -> list[float]:
+    state = estimate(samples, bias_from_rest=bias_from_rest).state
     return [float(state[f"bias_{axis}"][0]) for axis in "xyz"]
 
 

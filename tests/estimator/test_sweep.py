@@ -61,7 +61,12 @@ def test_the_best_pair_has_the_least_mean_closure_over_the_feet() -> None:
 
 def test_it_tells_its_progress_and_can_be_given_up() -> None:
     heard: list[float] = []
-    sweep(table_of(LONG.matrix), PAPERS, STANCE, SWING, lambda done: not heard.append(done))
+
+    def hear(done: float) -> bool:
+        heard.append(done)
+        return True
+
+    sweep(table_of(LONG.matrix), PAPERS, STANCE, SWING, hear)
     assert heard == sorted(heard)
     assert heard[-1] == 1.0
     with pytest.raises(InterruptedError):
