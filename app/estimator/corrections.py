@@ -12,7 +12,7 @@ from app.motion import Floats
 
 
 class Event(IntEnum):
-    """Columns of an event, float64 [15]: what happened, and which rows change by it."""
+    """Columns of an event, float64 [16]: what happened, and which rows change by it."""
 
     HAPPENED = 0
     LIFT_ROW = 1  # rows after it change
@@ -23,9 +23,10 @@ class Event(IntEnum):
     EPSILON = 6  # 6…8: ε of eq. (10), m/s²
     START = 9  # 9…11: position at the lift
     END = 12  # 12…14: position at the contact
+    APPLIED = 15  # 1: the rows are corrected already
 
 
-EVENT_WIDTH = 15
+EVENT_WIDTH = 16
 _HAPPENED, _LIFT_ROW, _CONTACT_ROW, _ROW = 0, 1, 2, 3
 _LIFT_NS, _EPSILON, _END = int(Event.LIFT_NS), int(Event.EPSILON), int(Event.END)
 

@@ -29,7 +29,7 @@ def run(
 ) -> tuple[int, int]:
     """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 12].
 
-    Stops early when ``events`` [m, 15] is full. Returns the next sample's place and the events' count.
+    Stops early when ``events`` [m, 16] is full. Returns the next sample's place and the events' count.
     """
     now = state[0]
     count = 0
@@ -50,7 +50,7 @@ def run(
         rows[i, 10], rows[i, 11] = now.phase, now.statistic
         if happened & s.REPORTED:
             write_event(events[count], now, happened)
-            count += 1
+            count += keep_event(events[count], rows[: i + 1], samples[: i + 1])
     return end, count
 
 
@@ -60,10 +60,23 @@ def write_event(event: Floats, now: State, happened: int) -> None:
     event[0], event[1], event[2], event[3] = happened, now.lift_row, now.end_row, now.row - 1.0
     event[4], event[5] = now.lift_ns, now.end_swing_s
     event[12], event[13], event[14] = now.px, now.py, now.pz
+    event[15] = 0.0
     if happened & s.STRIDE:
         end_velocity = (now.end_vx, now.end_vy, now.end_vz)
         event[6], event[7], event[8] = bias_of_swing(end_velocity, now.end_swing_s)
         event[9], event[10], event[11] = now.from_x, now.from_y, now.from_z
+
+
+@kernel
+def keep_event(event: Floats, rows: Floats, samples: Floats) -> int:
+    """Apply an event whose rows are all here, the last of them just made; 1 if more than that is to do."""
+    first = int(event[3]) - rows.shape[0] + 1  # the number of row 0
+    begin = int(event[1]) + 1 - first
+    if begin < 0:
+        return 1
+    correct(rows[begin:], first + begin, samples[begin:], event)
+    event[15] = 1.0
+    return 1 if int(event[0]) & (s.STRIDE | s.SEGMENT) else 0
 
 
 class Checkpoint(NamedTuple):
@@ -140,9 +153,9 @@ class Tracker:
                 self._happen(samples, self._events[k])
 
     def _happen(self, samples: Blocks, event: Floats) -> None:
-        kind, lift, _, row, *_ = event.tolist()
+        kind, lift, _, row, *_, applied = event.tolist()
         happened, first, last = int(kind), int(lift) + 1, int(row) + 1
-        if happened & (s.SWING_FOUND | s.FLICKER | s.STRIDE):
+        if not applied and happened & (s.SWING_FOUND | s.FLICKER | s.STRIDE):
             for rows, number in self.rows.pieces(first, last):
                 piece, place = samples.block(number)
                 correct(rows, number, piece[place : place + len(rows)], event)
