@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import Any, Protocol
 
@@ -13,9 +13,10 @@ import numpy as np
 from app.formats.mounting import AS_GIVEN, Axes, rotation
 from app.formats.units import G_MPS2
 from app.formats.wire import gx1, lines, mip, ngimu, witmotion, ximu3, xsens
-from app.formats.wire.catalogue import Decoder
+from app.formats.wire.catalogue import Decoder, Model
 from app.formats.wire.making import Z_UP
-from app.motion import Sample
+from app.formats.wire.talk import Script, Talk
+from app.motion import Quaternion, Sample, Vector
 
 DEG = math.pi / 180
 FLOAT32 = 2.0**-23  # relative
@@ -244,3 +245,35 @@ def adds_up(decoder: Decoder) -> bool:
 def readings(samples: list[Sample]) -> list[tuple[Any, ...]]:
     """Samples without what depends on when and after what they came."""
     return [(s.specific_force_b, s.angular_rate_b) for s in samples]
+
+
+def converse(script: Script[Any], model: Model, samples: Iterable[Sample] = (), lost: int = 0) -> Talk[Any]:
+    """A start-up against a device that goes on measuring; its first ``lost`` answers never arrive."""
+    talk, waiting = Talk(script), iter(samples)
+    for _ in range(400):
+        if talk.ask is None:
+            return talk
+        answer = model.receive(talk.ask.send)
+        if answer and lost:
+            lost, answer = lost - 1, b""
+        streamed = b"".join(model.measure(sample) for sample in itertools.islice(waiting, 3))
+        if not talk.receive(streamed + answer):
+            talk.expire()
+    raise AssertionError("the conversation never ends")
+
+
+def at_rest(
+    count: int, axes_down: Vector = (0.0, 0.0, -G_MPS2), q: Quaternion = (1.0, 0.0, 0.0, 0.0)
+) -> list[Sample]:
+    """Samples of a still, level shoe, 10 ms apart."""
+    return [
+        Sample("foot", i, i * 10_000_000, 0, axes_down, (0.0, 0.0, 0.0), (20.0, 0.0, 44.0), 0, q)
+        for i in range(count)
+    ]
+
+
+def result(talk: Talk[Any]) -> Any:
+    """What a conversation that went well found."""
+    assert talk.failed == ""
+    assert talk.result is not None
+    return talk.result
