@@ -193,6 +193,15 @@ def test_a_lift_that_was_pending_at_a_gap_was_none() -> None:
     assert not rows[:, 10].any()
 
 
+def test_integration_begins_with_the_acceleration_of_the_last_quiet_sample() -> None:
+    """Velocity one sample after the lift is the mean of both accelerations, held for dt."""
+    first = np.vstack([QUIET, spinning(20)])
+    first[99, 0], first[100:, 0] = 3.0, 1.0
+    rows = rows_of(estimate(segment_of(first, 0.01, 0.0, QUIET[:1]), gain_stance=0.0))
+    assert rows[99, 3] == 0.0
+    assert math.hypot(*rows[100, 3:5]) == pytest.approx(0.5 * (3.0 + 1.0) * 0.01, rel=1e-3)
+
+
 def test_a_flicker_moves_nothing() -> None:
     first = np.vstack([QUIET, spinning(3, 5.0), QUIET])
     rows = rows_of(estimate(segment_of(first, 0.01, 0.0, QUIET), gain_stance=0.0))
