@@ -43,7 +43,8 @@ UPPER_TOP = curve(
     (0.74, 0.075), (0.86, 0.064), (0.94, 0.056), (0.985, 0.046), (1, 0.038),
 )  # fmt: skip
 OPENING = curve(
-    (0, 0), (0.03, 0), (0.045, 0.55), (0.11, 0.97), (0.25, 1.1), (0.34, 0.98), (0.41, 0.55), (0.435, 0), (1, 0)
+    (0, 0), (0.03, 0), (0.045, 0.55), (0.11, 0.97), (0.25, 1.1), (0.34, 0.98), (0.41, 0.55), (0.435, 0),
+    (1, 0),
 )  # fmt: skip
 
 
@@ -253,8 +254,8 @@ def to_body(mesh: trimesh.Trimesh) -> trimesh.Trimesh:
 def shoe() -> dict[str, trimesh.Trimesh]:
     """The right shoe's parts by name."""
     parts = {
-        "outsole": outsole(), "midsole": midsole(), "upper": upper(), "toe_cap": toe_cap(), "stripe": stripe(),
-        "collar": collar(), "lining": lining(), "tongue": tongue(), "laces": laces(),
+        "outsole": outsole(), "midsole": midsole(), "upper": upper(), "toe_cap": toe_cap(),
+        "stripe": stripe(), "collar": collar(), "lining": lining(), "tongue": tongue(), "laces": laces(),
         "sensor": sensor(), "light": light(),
     }  # fmt: skip
     return {name: to_body(mesh) for name, mesh in parts.items()}

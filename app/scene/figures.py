@@ -179,37 +179,50 @@ def _difference(limit: Limit, before: Value, after: Value) -> str:
 
 
 def comparison(snapshot: Snapshot) -> str:
-    """The candidate beside the main track: closure, distance, strides."""
-    if snapshot.candidate is None:
-        waiting = "re-estimating…" if snapshot.pending else "No candidate: move a slider to make one."
-        return f'<div class="ss-note">{waiting}</div>'
-    mains = {f.sensor: f for f in snapshot.main.feet}
-    both = [(mains[f.sensor], f) for f in snapshot.candidate.feet if f.sensor in mains]
-    body = "".join(_compared(main, other, len(mains) > 1) for main, other in both)
-    what = words.plain(differences(snapshot.main.settings, snapshot.candidate.settings), 200)
+    """The candidate beside the main track: closure, distance, strides.
+
+    As tall without a candidate as with one: the slider under a hand must not move away.
+    """
+    others = {f.sensor: f for f in snapshot.candidate.feet} if snapshot.candidate else {}
+    feet = snapshot.main.feet
+    body = "".join(_compared(main, others.get(main.sensor), len(feet) > 1) for main in feet)
     pending = '<span class="ss-pending">re-estimating…</span>' if snapshot.pending else ""
     return (
         '<div class="ss-candidate"><div class="ss-card-head"><span class="ss-dot"></span>Candidate'
-        f'{pending}</div><div class="ss-what">{what}</div><table class="ss-compare">'
+        f'{pending}</div><div class="ss-what">{_what(snapshot)}</div><table class="ss-compare">'
         f"<tr><td></td><th>main</th><th>candidate</th><th>change</th></tr>{body}</table></div>"
     )
 
 
-def _compared(main: FootView, other: FootView, named: bool) -> str:
+def _what(snapshot: Snapshot) -> str:
+    if snapshot.candidate is None:
+        return "none: move a slider to make one"
+    return words.plain(differences(snapshot.main.settings, snapshot.candidate.settings), 200)
+
+
+def _compared(main: FootView, other: FootView | None, named: bool) -> str:
+    rows = [("To start", "to_start_m", 2, "m"), ("Distance", "distance_m", 2, "m"), ("Strides", "strides", 0, "")]
     head = f'<tr><th class="ss-who" colspan="4">{FEET[main.role]}</th></tr>' if named else ""
-    share = (f"{words.percent(f.to_start_m, f.distance_m)}" for f in (main, other))
-    rows = [
-        ("To start", main.to_start_m, other.to_start_m, 2, "m"),
-        ("Distance", main.distance_m, other.distance_m, 2, "m"),
-        ("Strides", main.strides, other.strides, 0, ""),
-    ]
-    cells = "".join(
-        f"<tr><td>{name}</td><td>{words.number(a, d)} {unit}</td><td>{words.number(b, d)} {unit}</td>"
-        f"<td>{words.signed(b - a, d)} {unit}</td></tr>"
-        for name, a, b, d, unit in rows
+    return head + "".join(
+        f"<tr><td>{name}</td>{_cells(getattr(main, key), getattr(other, key, None), digits, unit)}</tr>"
+        for name, key, digits, unit in rows
+    ) + _shares(main, other)  # fmt: skip
+
+
+def _cells(main: float, other: float | None, digits: int, unit: str) -> str:
+    if other is None:
+        return f"<td>{words.number(main, digits)} {unit}</td><td>{words.DASH}</td><td>{words.DASH}</td>"
+    change = words.signed(other - main, digits)
+    return "".join(
+        f"<td>{text} {unit}</td>" for text in (words.number(main, digits), words.number(other, digits), change)
     )
-    one, two = share
-    return f"{head}{cells}<tr><td>of distance</td><td>{one}</td><td>{two}</td><td></td></tr>"
+
+
+def _shares(main: FootView, other: FootView | None) -> str:
+    """The way back as a part of the distance."""
+    theirs = words.percent(other.to_start_m, other.distance_m) if other is not None else words.DASH
+    ours = words.percent(main.to_start_m, main.distance_m)
+    return f"<tr><td>of distance</td><td>{ours}</td><td>{theirs}</td><td></td></tr>"
 
 
 def slots(snapshot: Snapshot) -> str:

@@ -79,6 +79,12 @@ def test_the_difference_is_the_candidates_minus_the_mains() -> None:
     assert "k_s 1.05 → 1.6 1/s" in text
 
 
+def test_the_box_is_as_tall_without_a_candidate() -> None:
+    """Else the slider under a hand would jump as its candidate appears."""
+    rows = [figures.comparison(fakes.snapshot(5.0, candidate=c)).count("<tr>") for c in (False, True)]
+    assert rows[0] == rows[1] > 4
+
+
 def test_angles_are_told_in_degrees() -> None:
     one = Settings()
     assert figures.differences(one, replace(one, start_heading_rad=math.pi / 2)) == "ψ_0 0 → 90 °"

@@ -168,7 +168,7 @@ def test_a_dragged_slider_makes_a_candidate_and_another_browser_agrees(
     late = house.open()
     for seen in (page, late):
         wait_for_node(seen, "/ned/ghost/foot")
-        seen.get_by_text("Candidate", exact=True).wait_for(timeout=PATIENCE_MS)
+        seen.get_by_text("k_s 1.05 → 1.6 1/s").wait_for(timeout=PATIENCE_MS)
         assert is_at(seen, 9.7)
         assert float(number_beside(seen, gain)) == pytest.approx(float(value))
     # Dropped: both sliders go back.
