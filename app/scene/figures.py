@@ -16,6 +16,9 @@ LINKS = {
     Link.WAITING: "waiting for samples", Link.LIVE: "live", Link.PAUSED: "paused", Link.ENDED: "ended",
     Link.LOST: "connection lost",
 }  # fmt: skip
+COMPARED = (
+    ("To start", "to_start_m", 2, "m"), ("Distance", "distance_m", 2, "m"), ("Strides", "strides", 0, ""),
+)  # fmt: skip
 UNLINKED = '<div class="ss-note">Feet not linked: each has its own origin and start heading.</div>'
 
 
@@ -201,21 +204,18 @@ def _what(snapshot: Snapshot) -> str:
 
 
 def _compared(main: FootView, other: FootView | None, named: bool) -> str:
-    rows = [("To start", "to_start_m", 2, "m"), ("Distance", "distance_m", 2, "m"), ("Strides", "strides", 0, "")]
     head = f'<tr><th class="ss-who" colspan="4">{FEET[main.role]}</th></tr>' if named else ""
     return head + "".join(
         f"<tr><td>{name}</td>{_cells(getattr(main, key), getattr(other, key, None), digits, unit)}</tr>"
-        for name, key, digits, unit in rows
+        for name, key, digits, unit in COMPARED
     ) + _shares(main, other)  # fmt: skip
 
 
 def _cells(main: float, other: float | None, digits: int, unit: str) -> str:
     if other is None:
         return f"<td>{words.number(main, digits)} {unit}</td><td>{words.DASH}</td><td>{words.DASH}</td>"
-    change = words.signed(other - main, digits)
-    return "".join(
-        f"<td>{text} {unit}</td>" for text in (words.number(main, digits), words.number(other, digits), change)
-    )
+    texts = (words.number(main, digits), words.number(other, digits), words.signed(other - main, digits))
+    return "".join(f"<td>{text} {unit}</td>" for text in texts)
 
 
 def _shares(main: FootView, other: FootView | None) -> str:

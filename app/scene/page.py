@@ -38,6 +38,7 @@ class Scene:
         self.port = self._server.get_port()
         self._view = {"follow": True, "dark": True, "axes": False}
         self._glide, self._drawn_at, self._next_text, self._next_graph = Glide(), 0.0, 0.0, 0.0
+        self._centre: Vector = self._glide.centre
         self._controls = Controls(self._server.gui, submit)
         self._root = self._server.scene.add_frame(
             "/ned", wxyz=NED_WXYZ, position=in_view(self._glide.centre), show_axes=False
@@ -75,8 +76,11 @@ class Scene:
         if not self._view["follow"] or not places:
             return
         centre = self._glide.towards(middle(places), elapsed_s)
-        private.force_pose(self._root, NED_WXYZ, in_view(centre))
-        self._ground.reach(centre)
+        north, east, down = (round(c, 4) for c in centre)
+        if (north, east, down) != self._centre:
+            self._centre = (north, east, down)
+            private.force_pose(self._root, NED_WXYZ, in_view(self._centre))
+            self._ground.reach(self._centre)
 
     def _set_view(self, name: str, on: bool) -> None:
         self._view[name] = on
