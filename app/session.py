@@ -25,6 +25,9 @@ GRAPH_S = 10.0
 GRAPH_POINTS = 300
 #: Applied changes kept for the page.
 CHANGES = 200
+#: A slider moved again by the same person within this time is the same drag.
+DRAG_NS = 2_000_000_000
+SLIDER = "moved"
 #: The truth's trail is drawn from this many points a second.
 TRUTH_HZ = 25.0
 DEFAULT_BUDGET = 512 * 2**20
@@ -57,6 +60,7 @@ class Session:
         self._undo: list[Settings] = []
         self._slots: dict[str, Settings] = {}
         self._slot_now: str | None = None
+        self._last_apply = ("", "", 0)  # who, why, when
         self._jobs = 0
         self._frozen: dict[str, TrailBuilder] = {}  # the trail of samples that are gone
         self._truth_trails: dict[str, tuple[tuple[float, bool], int, TrailBuilder]] = {}
@@ -89,9 +93,9 @@ class Session:
     def _apply(self, order: m.Order, command: m.Command) -> None:
         match command:
             case m.SetCandidate(changes):
-                self._want(
-                    order, self.candidate_settings.with_changes(dict(changes)), self._apply_at_once, "sliders"
-                )
+                settings = self.candidate_settings.with_changes(dict(changes))
+                moved = " ".join([SLIDER, *sorted(key for key, _ in changes)])
+                self._want(order, settings, self._apply_at_once, moved)
             case m.ReplaceCandidate(settings, reason):
                 self._want(order, settings, self._apply_at_once, reason)
             case m.ApplyCandidate():
@@ -219,9 +223,10 @@ class Session:
             self._want(order, self._undo.pop(), True, "undo")
 
     def _make_main(self, track: Track, why: Reestimation) -> None:
-        if why.reason != "undo":
+        if not self._same_drag(why) and why.reason != "undo":
             self._undo.append(why.before)
-        what = f"{why.reason}: {why.before.differences(track.settings)}"
+        reason = "slider" if why.reason.startswith(SLIDER) else why.reason
+        what = f"{reason}: {why.before.differences(track.settings)}"
         self._note(m.Change(why.taken, why.host_ns, why.who, what))
         turn_rad = track.settings.start_heading_rad - self.main.settings.start_heading_rad
         for sensor, frozen in self._frozen.items():
@@ -231,6 +236,16 @@ class Session:
         if self._slot_now in self._slots and self._slots[self._slot_now] != track.settings:
             self._slot_now = None
         self.main, self.candidate = track, None
+
+    def _same_drag(self, why: Reestimation) -> bool:
+        """Whether this goes on with the slider that the last apply moved: one drag is one step to undo."""
+        last, self._last_apply = self._last_apply, (why.who, why.reason, why.host_ns)
+        who, reason, host_ns = last
+        return (
+            why.reason.startswith(SLIDER)
+            and (who, reason) == (why.who, why.reason)
+            and 0 <= why.host_ns - host_ns < DRAG_NS
+        )
 
     def _note(self, change: m.Change) -> None:
         self.changes.append(change)

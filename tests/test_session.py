@@ -513,3 +513,23 @@ def test_a_foot_that_rests_for_long_is_a_short_trail() -> None:
     view = session.snapshot().main.feet[0]
     assert (view.to_start_m, view.strides) == (0.0, 0)
     assert length_of(view.trail) == 0.0
+
+
+def test_one_drag_is_one_step_to_undo() -> None:
+    session = fed(Session(PAPERS), WALK)
+    moves = [
+        ("a", 0.5, 0),
+        ("a", 0.6, 10**8),
+        ("a", 0.7, 2 * 10**8),
+        ("b", 2.0, 3 * 10**8),
+        ("b", 2.5, 9 * 10**9),
+    ]
+    tell(session, m.SetApplyAtOnce(True))
+    depths = []
+    for who, gain, host_ns in moves:
+        session.apply(m.Order(m.SetCandidate((("gain_stance", gain),)), who, host_ns))
+        settle(session)
+        depths.append(session.snapshot().undo_depth)
+    assert depths == [1, 1, 1, 2, 3]
+    tell(session, m.Undo(), m.Undo())
+    assert session.main.settings.gain_stance == 0.7
