@@ -47,6 +47,8 @@ class Columns:
 
 def find_columns(cells: Sequence[str]) -> Columns | None:
     """The columns that a header names; None unless it names three forces and three rates."""
+    if cells and not cells[-1]:
+        cells = cells[:-1]  # a trailing separator
     found: dict[tuple[str, int], int] = {}
     units: dict[str, str] = {}
     for place, cell in enumerate(cells):
@@ -60,7 +62,7 @@ def find_columns(cells: Sequence[str]) -> Columns | None:
     if not all((kind, i) in found for kind in ("force", "rate") for i in range(3)):
         return None
     if _ARTEMIS & {_split(cell)[0] for cell in cells}:  # OpenLog Artemis never writes its units
-        units = {"force": "mg", "rate": "dps", "field": "ut"} | units
+        units = {"time": "s", "force": "mg", "rate": "dps", "field": "ut"} | units
     names = {_split(cell)[0] for cell in cells}
     if "micros" in names and "rtctime" in names:
         found["time", 0] = [_split(cell)[0] for cell in cells].index("micros")

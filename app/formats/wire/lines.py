@@ -124,6 +124,8 @@ class LinesDecoder:
                 self.counters.bad_checksum += 1
                 return None
             names, cells = _pairs(_cells(checked))
+            if self._columns and len(cells) == self._columns.count + 1 and not cells[-1]:
+                cells = cells[:-1]
             header = find_columns(cells) if not names else None
             if header is not None:
                 self._columns, self._units = header, {}
@@ -316,10 +318,10 @@ def _quad(cells: list[str], places: tuple[int, int, int, int] | None) -> Quatern
 
 
 def _cells(line: str) -> list[str]:
-    """Cells by the first separator it has: comma, semicolon, tab, spaces; a trailing one ends nothing."""
+    """Cells by the first separator it has: comma, semicolon, tab, spaces."""
     for separator in ",;\t":
         if separator in line:
-            return [cell.strip() for cell in line.rstrip().removesuffix(separator).split(separator)]
+            return [cell.strip() for cell in line.split(separator)]
     return line.split()
 
 
@@ -343,8 +345,8 @@ def _is_prefix(head: str, rest: str) -> bool:
 
 def _pairs(cells: list[str]) -> tuple[list[str], list[str]]:
     """Names and values of ``name:value`` cells; no names where they are none."""
-    pairs = [cell.split(":") for cell in cells]
-    if all(len(pair) == 2 and pair[0] and not pair[0][0].isdigit() for pair in pairs):
+    pairs = [cell.split(":") for cell in cells if cell]
+    if pairs and all(len(pair) == 2 and pair[0] and not pair[0][0].isdigit() for pair in pairs):
         return [pair[0] for pair in pairs], [pair[1].strip() for pair in pairs]
     return [], cells
 
