@@ -208,7 +208,7 @@ def _compared(main: FootView, other: FootView | None, named: bool) -> str:
     return head + "".join(
         f"<tr><td>{name}</td>{_cells(getattr(main, key), getattr(other, key, None), digits, unit)}</tr>"
         for name, key, digits, unit in COMPARED
-    ) + _shares(main, other)  # fmt: skip
+    )
 
 
 def _cells(main: float, other: float | None, digits: int, unit: str) -> str:
@@ -216,13 +216,6 @@ def _cells(main: float, other: float | None, digits: int, unit: str) -> str:
         return f"<td>{words.number(main, digits)} {unit}</td><td>{words.DASH}</td><td>{words.DASH}</td>"
     texts = (words.number(main, digits), words.number(other, digits), words.signed(other - main, digits))
     return "".join(f"<td>{text} {unit}</td>" for text in texts)
-
-
-def _shares(main: FootView, other: FootView | None) -> str:
-    """The way back as a part of the distance."""
-    theirs = words.percent(other.to_start_m, other.distance_m) if other is not None else words.DASH
-    ours = words.percent(main.to_start_m, main.distance_m)
-    return f"<tr><td>of distance</td><td>{ours}</td><td>{theirs}</td><td></td></tr>"
 
 
 def slots(snapshot: Snapshot) -> str:

@@ -46,8 +46,9 @@ class Panel:
         self._replaying = Replaying(controls)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Tune"):
-            self._box = CandidateBox(controls)
             self._tuning = Tuning(controls)
+            self._box = CandidateBox(controls)
+            self._tuning.add_more()
         with tabs.add_tab("Gains"):
             self._search = GainSearch(controls)
         with tabs.add_tab("Source"):

@@ -43,6 +43,10 @@ class Tuning:
         self.resets: list[Input] = []
         for name in FIRST:
             self._add(name)
+
+    def add_more(self) -> None:
+        """The rest, folded, and the button that resets all: they stand below the candidate."""
+        controls = self._controls
         with controls.gui.add_folder("More settings", expand_by_default=False):
             for name in LIMITS:
                 if name not in FIRST:
