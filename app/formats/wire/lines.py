@@ -123,10 +123,10 @@ class LinesDecoder:
             if checked is None:
                 self.counters.bad_checksum += 1
                 return None
-            names, cells = _pairs(_cells(checked))
+            names, cells = _pairs(checked)
             if self._columns and len(cells) == self._columns.count + 1 and not cells[-1]:
                 cells = cells[:-1]
-            header = find_columns(cells) if not names else None
+            header = find_columns(cells) if not names and _are_words(cells) else None
             if header is not None:
                 self._columns, self._units = header, {}
                 return None
@@ -258,7 +258,7 @@ def readable(line: bytes) -> bool:
     text = line.decode("utf-8", "replace").strip()
     if text.startswith("{"):
         return find_columns(_object(text)[0]) is not None
-    names, cells = _pairs(_cells(_unwrapped(text) or ""))
+    names, cells = _pairs(_unwrapped(text) or "")
     if find_columns(names or cells) is not None:
         return True
     return sum(_number(cell) is not None for cell in cells) >= 6
@@ -343,9 +343,15 @@ def _is_prefix(head: str, rest: str) -> bool:
     return _LETTERS.fullmatch(head) is not None and _number(rest.partition(",")[0]) is not None
 
 
-def _pairs(cells: list[str]) -> tuple[list[str], list[str]]:
-    """Names and values of ``name:value`` cells; no names where they are none."""
-    pairs = [cell.split(":") for cell in cells if cell]
+def _are_words(cells: list[str]) -> bool:
+    """Whether it can be a header: its first cell and five more begin with a letter."""
+    return cells[0][:1].isalpha() and sum(cell[:1].isalpha() for cell in cells) >= 6
+
+
+def _pairs(line: str) -> tuple[list[str], list[str]]:
+    """Names and values of ``name:value`` cells; a line of other cells has no names."""
+    cells = _cells(line)
+    pairs = [cell.split(":") for cell in cells if cell] if ":" in line else []
     if pairs and all(len(pair) == 2 and pair[0] and not pair[0][0].isdigit() for pair in pairs):
         return [pair[0] for pair in pairs], [pair[1].strip() for pair in pairs]
     return [], cells

@@ -20,7 +20,7 @@ Result = TypeVar("Result")
 #: Finds an answer in the bytes that came: where it begins and ends, or None.
 FindAnswer = Callable[[bytes], tuple[int, int] | None]
 
-_KEPT = 65536
+_KEPT = 16384  # of what came since the question; the longest answer has 2 kB
 
 
 def no_answer(_: bytes) -> None:
