@@ -48,6 +48,20 @@ class GaitPhase(IntEnum):
     SWING = 1
 
 
+class MotionId(IntEnum):
+    """What the feet ask for (dissertation, Table 14); 8 on are the project's own. Sent over UDP as it is."""
+
+    NONE = 0
+    FORWARD = 1
+    FORWARD_RIGHT = 2
+    FORWARD_LEFT = 3
+    SIDE_RIGHT = 4
+    SIDE_LEFT = 5
+    TURN_CW = 6
+    TURN_CCW = 7
+    BACKWARD = 8
+
+
 # --- samples -------------------------------------------------------------------------------------
 
 
