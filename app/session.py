@@ -11,25 +11,20 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 
-import numpy as np
-
 from app import motion as m
 from app.blocks import BLOCK
-from app.rotation import from_yaw, rotate, yaw_of
+from app.graphs import graph_of
+from app.rotation import yaw_of
 from app.settings import Settings
 from app.tracks import Reestimation, SensorStore, Track
 from app.trail import TrailBuilder
+from app.truth import TruePlace, TrueWalk
 
-#: Seconds that the graphs show, and about how many points.
-GRAPH_S = 10.0
-GRAPH_POINTS = 300
 #: Applied changes kept for the page.
 CHANGES = 200
 #: A slider moved again by the same person within this time is the same drag.
 DRAG_NS = 2_000_000_000
 SLIDER = "moved"
-#: The truth's trail is drawn from this many points a second.
-TRUTH_HZ = 25.0
 DEFAULT_BUDGET = 512 * 2**20
 
 
@@ -63,7 +58,7 @@ class Session:
         self._last_apply = ("", "", 0)  # who, why, when
         self._jobs = 0
         self._frozen: dict[str, TrailBuilder] = {}  # the trail of samples that are gone
-        self._truth_trails: dict[str, tuple[tuple[float, bool], int, TrailBuilder]] = {}
+        self._true: dict[str, TrueWalk] = {}
 
     # --- in ----------------------------------------------------------------------------------------
 
@@ -265,7 +260,7 @@ class Session:
         coming, shown = self._coming, self.candidate_settings
         self._note(m.Change(self.number, order.host_ns, order.who, "restarted here"))
         self.epoch += 1
-        self.stores, self._frozen, self._truth_trails = {}, {}, {}
+        self.stores, self._frozen, self._true = {}, {}, {}
         self.wanted, self._next, self.candidate = None, None, None
         self.main = Track(f"main{self.epoch}", self.main.settings)
         if coming is not None:
@@ -299,13 +294,13 @@ class Session:
     def snapshot(self) -> m.Snapshot:
         """What the page needs, now. Its cost does not grow with the walk."""
         stores = self.stores
-        truth_n = {name: self._true_position(name, s.elapsed_s) for name, s in stores.items() if self._truth}
+        true = self._look_at_truth()
         return m.Snapshot(
             number=self.number,
             t_s=max((s.elapsed_s for s in stores.values()), default=0.0),
-            main=self.main.view(stores, truth_n),
-            candidate=self.candidate.view(stores, truth_n) if self.candidate else None,
-            truth={name: self._truth_trail(name, store) for name, store in stores.items() if self._truth},
+            main=self.main.view(stores, true),
+            candidate=self.candidate.view(stores, true) if self.candidate else None,
+            truth={name: walk.trail() for name, walk in self._true.items()},
             candidate_settings=self.candidate_settings,
             pending=self.wanted is not None,
             apply_at_once=self._apply_at_once,
@@ -313,9 +308,7 @@ class Session:
             slots=dict(self._slots),
             slot_now=self._slot_now,
             changes=tuple(self.changes[-20:]),
-            graphs={
-                name: self._graph(name, store) for name, store in stores.items() if name in self.main.feet
-            },
+            graphs={name: graph_of(stores[name], foot) for name, foot in self.main.feet.items()},
             health={name: self._health(name, store) for name, store in stores.items()},
             hindsight_from_s=max(
                 (s.time_ns(s.samples.start) * 1e-9 for s in stores.values() if s.samples), default=0.0
@@ -325,54 +318,18 @@ class Session:
             epoch=self.epoch,
         )
 
+    def _look_at_truth(self) -> dict[str, TruePlace]:
+        if self._truth is None:
+            return {}
+        places = {}
+        for sensor, foot in self.main.feet.items():
+            if sensor not in self._true:
+                self._true[sensor] = TrueWalk(f"truth{self.epoch}.{sensor}", self._truth, sensor)
+            elapsed_s, row = self.stores[sensor].elapsed_s, foot.tracker.rows.end - 1
+            places[sensor] = self._true[sensor].look(row, elapsed_s, self.main.settings)
+        return places
+
     def _health(self, sensor: str, store: SensorStore) -> m.Health:
         foot = self.main.feet.get(sensor)
         segments = 1 + len(foot.tracker.segments) if foot else 0
         return m.Health(store.rate_hz(), store.samples.end, dict(store.dropped), store.saturated, segments)
-
-    def _graph(self, sensor: str, store: SensorStore) -> m.Graph:
-        rows = self.main.feet[sensor].tracker.rows
-        begin = store.row_at(store.elapsed_s - GRAPH_S)
-        stride = max(1, math.ceil((rows.end - begin) / GRAPH_POINTS))
-        begin += -begin % stride  # the same rows from one graph to the next, or the line would shimmer
-        times, values = [], []
-        for piece, row in rows.pieces(begin, rows.end):
-            offset = (begin - row) % stride
-            block, place = store.samples.block(row)
-            values.append(piece[offset::stride])
-            times.append(block[place + offset : place + len(piece) : stride, 0] * 1e-9)
-        table = np.concatenate(values) if values else np.empty((0, m.ROW_WIDTH))
-        return m.Graph(
-            t_s=np.concatenate(times) if times else np.empty(0),
-            statistic=table[:, m.RowColumn.STATISTIC].copy(),
-            swing=table[:, m.RowColumn.PHASE].copy(),
-            speed_mps=np.linalg.norm(table[:, m.VELOCITY], axis=1),
-            height_m=-table[:, m.RowColumn.DOWN],
-        )
-
-    def _true_positions(self, sensor: str, elapsed_s: m.Floats) -> m.Floats:
-        """The simulator's positions [n, 3], turned to the main track's start heading."""
-        assert self._truth is not None
-        settings = self.main.settings
-        position_n, q_nb = self._truth(sensor, np.append(0.0, elapsed_s))
-        start = 0.0 if settings.magnetometer else yaw_of(tuple(q_nb[0].tolist()))
-        turn = from_yaw(settings.start_heading_rad - start)
-        if turn == (1.0, 0.0, 0.0, 0.0):
-            return position_n[1:]
-        return np.array([rotate(turn, tuple(p)) for p in position_n[1:].tolist()])
-
-    def _true_position(self, sensor: str, elapsed_s: float) -> m.Floats:
-        positions: m.Floats = self._true_positions(sensor, np.array([elapsed_s]))[0]
-        return positions
-
-    def _truth_trail(self, sensor: str, store: SensorStore) -> m.Trail:
-        settings = self.main.settings
-        turned = (settings.start_heading_rad, settings.magnetometer)
-        was, done, builder = self._truth_trails.get(sensor, (None, 0, None))
-        if builder is None or was != turned:
-            done, builder = 0, TrailBuilder(f"truth{self.number}.{sensor}")
-        end = int(store.elapsed_s * TRUTH_HZ)
-        if end > done:
-            builder.add(self._true_positions(sensor, np.arange(done, end) / TRUTH_HZ))
-        self._truth_trails[sensor] = (turned, end, builder)
-        return builder.trail(np.empty((0, 3)))

@@ -14,8 +14,8 @@ import numpy as np
 from app.blocks import BLOCK, Blocks
 from app.estimator.tracker import Checkpoint, Tracker
 from app.motion import (
+    POSITION,
     SAMPLE_WIDTH,
-    Floats,
     Footprint,
     FootView,
     GaitPhase,
@@ -27,6 +27,7 @@ from app.motion import (
 )
 from app.settings import Settings
 from app.trail import TrailBuilder
+from app.truth import TruePlace
 
 NO_FIELD = (math.nan, math.nan, math.nan)
 #: m/s², rad/s or µT: no sensor reads that, and its square would spoil every sum (as in formats/clean).
@@ -162,7 +163,7 @@ class FootTrack:
             )
         return self._footprints
 
-    def view(self, store: SensorStore, truth_n: Floats | None) -> FootView:
+    def view(self, store: SensorStore, true: TruePlace | None) -> FootView:
         """This foot now. There must be a sample."""
         tracker = self.tracker
         block, place = tracker.rows.block(tracker.rows.end - 1)
@@ -188,8 +189,12 @@ class FootTrack:
             to_start_m=math.hypot(row[0], row[1]),
             trail=self.trail(),
             footprints=self.footprints(),
-            error_m=None if truth_n is None else float(np.linalg.norm(truth_n - np.array(position))),
+            error_m=None if true is None else self._error_m(true),
         )
+
+    def _error_m(self, true: TruePlace) -> float:
+        block, place = self.tracker.rows.block(true.row)
+        return float(np.linalg.norm(true.position_n - block[place, POSITION]))
 
 
 class Track:
@@ -218,9 +223,9 @@ class Track:
         trackers = ((sensor, foot.tracker) for sensor, foot in self.feet.items())
         return {sensor: t.checkpoints[t.rows.start] for sensor, t in trackers if t.rows.start}
 
-    def view(self, stores: Mapping[str, SensorStore], truth_n: Mapping[str, Floats]) -> TrackView:
+    def view(self, stores: Mapping[str, SensorStore], true: Mapping[str, TruePlace]) -> TrackView:
         """The whole track now."""
-        feet = (foot.view(stores[sensor], truth_n.get(sensor)) for sensor, foot in self.feet.items())
+        feet = (foot.view(stores[sensor], true.get(sensor)) for sensor, foot in self.feet.items())
         return TrackView(self.name, self.settings, tuple(feet))
 
     @property

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 APP = Path(__file__).parent.parent / "app"
-HEART = {"session", "tracks", "trail", "blocks", "warm", "motion", "settings", "rotation", "world"}
+HEART = {"session", "tracks", "trail", "truth", "graphs", "blocks", "warm", "motion", "settings", "rotation", "world"}
 HEART |= {"estimator", "gestures", "simulate", "formats", "studies"}
 EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled"}
 SHELL = {"run", "batch", "__main__", "__init__"}
