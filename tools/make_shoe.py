@@ -1,4 +1,6 @@
-"""Tool: models the shoe and writes assets/shoe.glb, the right one, part by part.
+"""Tool: models the shoe and writes assets/shoe.npz, the right one, part by part.
+
+The page reads plain arrays, because loading trimesh would double its start.
 
 Run ``python tools/make_shoe.py [PATH]``. Axes are the shoe's (x toe, y right, z down) with the
 origin in the sensor on the instep, metres. Each part is one named geometry, so that the scene can
@@ -19,7 +21,7 @@ Floats = NDArray[np.float64]
 
 LENGTH_M = 0.295
 SENSOR_M = (0.158, 0.0, 0.112)  # forward of the heel, right of the middle, above the floor
-PATH = Path(__file__).resolve().parents[1] / "assets" / "shoe.glb"
+PATH = Path(__file__).resolve().parents[1] / "assets" / "shoe.npz"
 
 
 def curve(*points: tuple[float, float]) -> PchipInterpolator:
@@ -262,12 +264,12 @@ def shoe() -> dict[str, trimesh.Trimesh]:
 
 
 def main(path: Path) -> None:
-    """Write the shoe as binary glTF."""
-    scene = trimesh.Scene()
+    """Write each part's vertices (float32 [n, 3]) and faces (uint32 [m, 3])."""
+    arrays = {}
     for name, mesh in shoe().items():
-        mesh.visual = trimesh.visual.ColorVisuals(mesh)
-        scene.add_geometry(mesh, geom_name=name, node_name=name)
-    path.write_bytes(scene.export(file_type="glb"))
+        arrays[f"{name}.vertices"] = mesh.vertices.astype(np.float32)
+        arrays[f"{name}.faces"] = mesh.faces.astype(np.uint32)
+    np.savez_compressed(path, **arrays)
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Edge, scene: the shoe: its parts from assets/shoe.glb, coloured, left or right, solid or ghost."""
+"""Edge, scene: the shoe: its parts from assets/shoe.npz, coloured, left or right, solid or ghost."""
 
 from __future__ import annotations
 
@@ -7,7 +7,6 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-import trimesh
 import viser
 from numpy.typing import NDArray
 
@@ -16,7 +15,7 @@ from app.rotation import from_yaw
 from app.scene import private
 from app.scene.colours import FOOT, Rgb, shade
 
-ASSET = Path(__file__).resolve().parents[2] / "assets" / "shoe.glb"
+ASSET = Path(__file__).resolve().parents[2] / "assets" / "shoe.npz"
 #: The sensor's height above the floor while the shoe stands flat (tools/make_shoe.py).
 SENSOR_HEIGHT_M = 0.112
 
@@ -28,10 +27,15 @@ def parts(mirrored: bool) -> dict[str, Mesh]:
     """Vertices [n, 3] in the shoe's axes and faces [m, 3] of each part; mirrored is the left shoe."""
     side = -1 if mirrored else 1
     flip = np.array([1.0, side, 1.0])
-    return {
-        name: ((mesh.vertices * flip).astype(np.float32), mesh.faces[:, ::side].astype(np.uint32))
-        for name, mesh in trimesh.load_scene(ASSET).geometry.items()
-    }
+    with np.load(ASSET) as made:
+        names = dict.fromkeys(key.partition(".")[0] for key in made)
+        return {
+            name: (
+                (made[f"{name}.vertices"] * flip).astype(np.float32),
+                np.ascontiguousarray(made[f"{name}.faces"][:, ::side]),
+            )
+            for name in names
+        }
 
 
 def paint(colour: Rgb) -> dict[str, Rgb]:
