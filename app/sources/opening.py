@@ -7,6 +7,7 @@ import logging
 import numpy as np
 
 from app.motion import InputError, Recording, Truth
+from app.simulate.gestures import make_gestures
 from app.simulate.walk import make_walk
 from app.sources.files import load
 from app.sources.replay import Replay
@@ -36,8 +37,11 @@ def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:
 
 
 def _simulated(spec: Spec) -> tuple[Recording, Truth]:
+    if spec.target == "gestures":
+        gestures = make_gestures(spec.options)
+        return gestures.recording, gestures.truth
     if spec.target != "walk":
-        raise InputError(f"sim:{spec.target}: this version simulates only sim:walk")
+        raise InputError(f"sim:{spec.target}: expected sim:walk or sim:gestures")
     walk = make_walk(spec.options)
     return walk.recording, walk.truth
 
