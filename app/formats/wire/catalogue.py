@@ -42,6 +42,10 @@ class Decoder(Protocol):
 class Model(Protocol):
     """A device as its host sees it, for the emulator."""
 
+    @property
+    def rate_hz(self) -> float:
+        """How often it measures as it is set now; faster samples are passed over."""
+
     def receive(self, data: bytes) -> bytes:
         """The replies to what the host sent."""
 

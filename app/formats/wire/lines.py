@@ -37,6 +37,7 @@ _TICKS_NS = {"s": 10**9, "sec": 10**9, "ms": 10**6, "us": 1000, "µs": 1000, "μ
 _NATIVE_COLUMNS = ["seq", "t", "ax", "ay", "az", "gx", "gy", "gz", "mx", "my", "mz"]
 _NATIVE_KEYS = {"acc": "force", "gyr": "rate", "mag": "field", "t": "time"}
 _CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d*)?)")
+_JSON = json.JSONDecoder(parse_int=str, parse_float=str)
 _LETTERS = re.compile(r"\$?[A-Za-z]+")
 
 Row = tuple[Columns, list[str], int]  # its columns, cells and arrival
@@ -360,7 +361,7 @@ def _pairs(line: str) -> tuple[list[str], list[str]]:
 def _object(line: str) -> tuple[list[str], list[str]]:
     """Names and values of a flat JSON object; nothing where it is none."""
     try:
-        read = json.loads(line, parse_int=str, parse_float=str)
+        read = _JSON.decode(line)
     except (ValueError, RecursionError):
         return ["?"], []
     if not isinstance(read, dict):
@@ -403,6 +404,8 @@ class LinesEncoder:
 
 class LinesDevice:
     """A board that prints: it takes nothing; its header comes once, at power-up."""
+
+    rate_hz = FASTEST_HZ
 
     def __init__(self, axes: Axes = Z_UP, style: str = "csv") -> None:
         self._encoder = LinesEncoder(axes, style)

@@ -20,6 +20,7 @@ from app.formats.wire.mip import (
     holds,
     packet,
 )
+from app.formats.wire.pace import Pace
 from app.formats.wire.stream import Frames
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
 from app.motion import Sample
@@ -128,7 +129,7 @@ def _who(answer: bytes | None) -> tuple[str, str, str]:
 class MipDevice:
     """A MIP sensor as its host sees it: ``receive`` its commands, ``measure`` a sample.
 
-    ``base_hz`` is the rate it is given samples at; the message format's decimation divides it.
+    It sends at ``base_hz`` over the message format's decimation.
     """
 
     def __init__(self, axes: Axes = AS_GIVEN, generation: int = 7, base_hz: int = 1000) -> None:
@@ -139,7 +140,12 @@ class MipDevice:
         self._generation, self._base_hz = generation, base_hz
         self._encoder = MipEncoder(axes, MipSetup(generation=generation))
         self._frames: Frames = frames()
-        self._count = 0
+        self._pace = Pace()
+
+    @property
+    def rate_hz(self) -> float:
+        """How often it sends: give it samples at this rate."""
+        return self._base_hz / self.decimation
 
     def receive(self, data: bytes) -> bytes:
         """The replies to what the host sent; what is no packet is passed over, as the sensor does."""
@@ -150,9 +156,8 @@ class MipDevice:
         )
 
     def measure(self, sample: Sample) -> bytes:
-        """Take a new measurement at the base rate; the packet, whenever one is due."""
-        self._count += 1
-        if not (self.streaming and self._enabled) or self._count % self.decimation:
+        """Take a new measurement; the packet, whenever one is due."""
+        if not (self.streaming and self._enabled and self._pace.due(sample.device_ns, self.rate_hz)):
             return b""
         return self._encoder.message(sample, self.wanted)
 

@@ -220,6 +220,8 @@ class NgimuEncoder:
 class NgimuDevice:
     """An NGIMU as its host sees it; it takes commands (``/identify``) and never answers them."""
 
+    rate_hz = FASTEST_HZ
+
     def __init__(self, axes: Axes = Z_UP, slip: bool = False) -> None:
         self._encoder = NgimuEncoder(axes, slip)
 

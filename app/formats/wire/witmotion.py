@@ -16,6 +16,7 @@ from app.formats.mounting import Axes
 from app.formats.saturation import RANGES
 from app.formats.units import G_MPS2
 from app.formats.wire.making import ENU, Z_UP, Maker, Taker, quantised, scaled
+from app.formats.wire.pace import Pace
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_header
 from app.formats.wire.talk import Ask, Script
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
@@ -209,13 +210,14 @@ def start_up(rate_hz: float = 100.0) -> Script[float]:
 class WitmotionDevice:
     """A WitMotion sensor as its host sees it: ``receive`` its settings, ``measure`` a sample.
 
-    It is given samples at its own rate and never answers.
+    It never answers; freshly made it sends ten times a second.
     """
 
     def __init__(self, axes: Axes = Z_UP) -> None:
         self.outputs = 0x1E  # bit n: frame 0x50 + n
         self.rate_code = 0x06
         self._unlocked = False
+        self._pace = Pace()
         self._encoder = WitmotionEncoder(axes)
         self._pending = b""
 
@@ -229,8 +231,15 @@ class WitmotionDevice:
         return b""
 
     def measure(self, sample: Sample) -> bytes:
-        """The burst of the frames that are switched on."""
+        """The burst of the frames that are switched on, whenever one is due."""
+        if not self._pace.due(sample.device_ns, self.rate_hz):
+            return b""
         return self._encoder.burst(sample, [0x50 + n for n in range(11) if self.outputs >> n & 1])
+
+    @property
+    def rate_hz(self) -> float:
+        """How often it sends: give it samples at this rate."""
+        return next((float(rate) for rate, code in RATES_HZ.items() if code == self.rate_code), 10.0)
 
     def _set(self, register: int, value: bytes) -> None:
         if register == 0x69:

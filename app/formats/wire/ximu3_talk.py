@@ -7,13 +7,14 @@ from dataclasses import dataclass
 
 from app.formats.mounting import Axes
 from app.formats.wire.making import Z_UP
+from app.formats.wire.pace import Pace
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
 from app.formats.wire.ximu3 import Ximu3Encoder
 from app.motion import Sample
 
 BAUDS = (115200, 921600)
 BASE_HZ = 400
-_FIELD_NS = 50_000_000
+_FIELD_HZ = 20.0
 _LONGEST = 1024
 
 
@@ -71,8 +72,8 @@ def _value(line: bytes | None, key: str) -> object:
 class Ximu3Device:
     """An x-IMU3 as its host sees it: ``receive`` its commands, ``measure`` a sample.
 
-    It is given samples at 400 Hz; its divisor is kept by leaving out, though the device averages.
-    The magnetometer keeps to 20 Hz.
+    Its divisor is kept by leaving samples out, though the device averages. The magnetometer keeps
+    to 20 Hz.
     """
 
     def __init__(self, axes: Axes = Z_UP, binary: bool = True, name: str = "emulated") -> None:
@@ -80,8 +81,7 @@ class Ximu3Device:
         self.settings |= {"binaryModeEnabled": binary, "inertialMessageRateDivisor": 8}
         self.settings |= {"ahrsMessageRateDivisor": 8}
         self._encoders = {True: Ximu3Encoder(axes, True), False: Ximu3Encoder(axes, False)}
-        self._count = 0
-        self._field_due_ns = 0
+        self._paces = {kind: Pace() for kind in ("field", "orientation", "inertial")}
         self._pending = b""
 
     def receive(self, data: bytes) -> bytes:
@@ -92,19 +92,28 @@ class Ximu3Device:
 
     def measure(self, sample: Sample) -> bytes:
         """Take a new measurement; the messages that are due."""
-        self._count += 1
         encoder = self._encoders[bool(self.settings["binaryModeEnabled"])]
         sent = b""
-        if sample.field_b is not None and sample.device_ns >= self._field_due_ns:
-            self._field_due_ns = sample.device_ns + _FIELD_NS
+        if sample.field_b is not None and self._paces["field"].due(sample.device_ns, _FIELD_HZ):
             sent += encoder.field(sample)
-        if sample.device_q_nb is not None and self._due("ahrsMessageRateDivisor"):
+        if sample.device_q_nb is not None and self._due("orientation", "ahrsMessageRateDivisor", sample):
             sent += encoder.orientation(sample)
-        return sent + (encoder.inertial(sample) if self._due("inertialMessageRateDivisor") else b"")
+        due = self._due("inertial", "inertialMessageRateDivisor", sample)
+        return sent + (encoder.inertial(sample) if due else b"")
 
-    def _due(self, key: str) -> bool:
+    @property
+    def rate_hz(self) -> float:
+        """How often it sends inertial messages: give it samples at this rate."""
+        return self._rate_hz("inertialMessageRateDivisor") or float(BASE_HZ)
+
+    def _due(self, kind: str, key: str, sample: Sample) -> bool:
+        rate_hz = self._rate_hz(key)
+        return rate_hz > 0.0 and self._paces[kind].due(sample.device_ns, rate_hz)
+
+    def _rate_hz(self, key: str) -> float:
+        """0: these messages are switched off."""
         divisor = self.settings[key]
-        return isinstance(divisor, int) and divisor > 0 and self._count % divisor == 0
+        return BASE_HZ / divisor if isinstance(divisor, int) and divisor > 0 else 0.0
 
     def _reply(self, line: bytes) -> bytes:
         try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from app.formats.mounting import Axes
 from app.formats.wire.making import Z_UP
+from app.formats.wire.pace import Pace
 from app.formats.wire.stream import Frames
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
 from app.formats.wire.xsens import (
@@ -103,7 +104,7 @@ def _chosen(configuration: bytes) -> dict[int, int]:
 class XsensDevice:
     """An MTi as its host sees it: ``receive`` its messages, ``measure`` a sample.
 
-    It is given samples at its output rate. Freshly powered it measures with its last configuration.
+    Freshly powered it measures with its last configuration.
     """
 
     def __init__(self, axes: Axes = Z_UP, most_hz: int = 400) -> None:
@@ -112,7 +113,9 @@ class XsensDevice:
         self._most_hz = most_hz
         self._encoder = XsensEncoder(axes)
         self._frames: Frames = frames()
+        self.rate_hz = 100.0  # how often it sends: give it samples at this rate
         self._count = 0
+        self._pace = Pace()
 
     def receive(self, data: bytes) -> bytes:
         """The replies to what the host sent; what is no message is passed over."""
@@ -120,7 +123,7 @@ class XsensDevice:
 
     def measure(self, sample: Sample) -> bytes:
         """Take a new measurement; while measuring, the message it sends."""
-        if not self.measuring:
+        if not (self.measuring and self._pace.due(sample.device_ns, self.rate_hz)):
             return b""
         self._count += 1
         return self._encoder.mtdata2(sample, self.wanted, self._count)
@@ -146,11 +149,10 @@ class XsensDevice:
     def _configure(self, asked: dict[int, int]) -> bytes:
         """Take what it can send, at the rate it can; the answer is what it took."""
         able = {kind: rate for kind, rate in asked.items() if kind in self._able}
-        self.wanted = list(able)
-        return b"".join(
-            kind.to_bytes(2) + (rate if rate == _EVERY else min(rate, self._most_hz)).to_bytes(2)
-            for kind, rate in able.items()
-        )
+        taken = {k: rate if rate == _EVERY else min(max(rate, 1), self._most_hz) for k, rate in able.items()}
+        self.wanted = list(taken)
+        self.rate_hz = float(max((rate for rate in taken.values() if rate != _EVERY), default=self.rate_hz))
+        return b"".join(kind.to_bytes(2) + rate.to_bytes(2) for kind, rate in taken.items())
 
     _able = frozenset(
         (PACKET_COUNTER, TIME_FINE, ACCELERATION, RATE_OF_TURN, MAGNETIC_FIELD, QUATERNION, STATUS_WORD)

@@ -263,13 +263,14 @@ def converse(script: Script[Any], model: Model, samples: Iterable[Sample] = (), 
 
 
 def at_rest(
-    count: int, axes_down: Vector = (0.0, 0.0, -G_MPS2), q: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    count: int,
+    force: Vector = (0.0, 0.0, -G_MPS2),
+    q: Quaternion = (1.0, 0.0, 0.0, 0.0),
+    step_ns: int = 10_000_000,
 ) -> list[Sample]:
-    """Samples of a still, level shoe, 10 ms apart."""
-    return [
-        Sample("foot", i, i * 10_000_000, 0, axes_down, (0.0, 0.0, 0.0), (20.0, 0.0, 44.0), 0, q)
-        for i in range(count)
-    ]
+    """Samples of a still shoe, level unless said otherwise."""
+    still, field = (0.0, 0.0, 0.0), (20.0, 0.0, 44.0)
+    return [Sample("foot", i, i * step_ns, 0, force, still, field, 0, q) for i in range(count)]
 
 
 def result(talk: Talk[Any]) -> Any:

@@ -22,7 +22,7 @@ def tilted(count: int):
     w, x, y, z = TILTED
     down = (2 * (x * z - w * y), 2 * (y * z + w * x), w * w - x * x - y * y + z * z)
     force = (-G_MPS2 * down[0], -G_MPS2 * down[1], -G_MPS2 * down[2])
-    return at_rest(count, force, TILTED)
+    return at_rest(count, force, TILTED, 20_000_000)
 
 
 @pytest.mark.parametrize("reports_gravity", [False, True])
@@ -108,7 +108,7 @@ def test_old_and_new_eeprom_commands() -> None:
 
 def test_continuous_mode_streams_until_stopped_and_answers_polls_between() -> None:
     device = Gx1Device()
-    samples = at_rest(20)
+    samples = at_rest(20, step_ns=20_000_000)
     assert device.measure(samples[0]) == b""
     assert device.receive(b"\x10\x00\x31")[:3] == b"\x10\x00\x31"
     stream = device.measure(samples[1]) + device.receive(b"\x02") + device.measure(samples[2])
@@ -120,11 +120,14 @@ def test_continuous_mode_streams_until_stopped_and_answers_polls_between() -> No
     assert device.measure(samples[4]) == b""
 
 
-def test_auto_start_and_the_tick_as_its_fastest_rate() -> None:
+def test_auto_start_and_the_rate_that_its_ticks_allow() -> None:
     device = Gx1Device(eeprom=FACTORY | {132: QUATERNION})
     fast = [sample._replace(device_ns=i * 1_000_000) for i, sample in enumerate(at_rest(1000))]
     sent = [message for sample in fast if (message := device.measure(sample))]
-    assert len(sent) == pytest.approx(1000 / 6.5536, abs=2)
+    assert len(sent) == pytest.approx(50.9, abs=1.5)  # three ticks of 6.5536 ms
+    device.receive(b"\x10\x00\x03")
+    assert device.rate_hz == pytest.approx(76.3, abs=0.01)
+    assert Gx1Device(eeprom=FASTEST).rate_hz == pytest.approx(1000 / 3)
 
 
 @given(st.lists(st.binary(max_size=30)))

@@ -18,7 +18,7 @@ def test_the_start_chooses_rate_and_messages(
     generation: int, lost: int, wanted_hz: int, base_hz: int, got_hz
 ) -> None:
     device = MipDevice(generation=generation, base_hz=base_hz)
-    samples = at_rest(400)
+    samples = at_rest(400, step_ns=10**9 // base_hz)
     talk = converse(start_up(wanted_hz), device, samples, lost)
     setup = result(talk)
     assert isinstance(setup, MipSetup)
