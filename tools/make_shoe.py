@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import trimesh
@@ -265,7 +266,7 @@ def shoe() -> dict[str, trimesh.Trimesh]:
 
 def main(path: Path) -> None:
     """Write each part's vertices (float32 [n, 3]) and faces (uint32 [m, 3])."""
-    arrays = {}
+    arrays: dict[str, Any] = {}
     for name, mesh in shoe().items():
         arrays[f"{name}.vertices"] = mesh.vertices.astype(np.float32)
         arrays[f"{name}.faces"] = mesh.faces.astype(np.uint32)
