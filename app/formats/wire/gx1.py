@@ -98,6 +98,8 @@ class Gx1Decoder:
         self._maker = Maker(sensor, axes, RANGES["gx1"])
         self._force, self._rate, self._field = self.setup.scales()
         self._ticks = TickLength(_KNOWN_TICKS_NS, 16)
+        from_yaw_pitch_roll(0.0, 0.0, 0.0)  # compiled on its first call: no sample waits for it
+        conjugate((1.0, 0.0, 0.0, 0.0))
         self._clock = None if self.setup.tick_ns is None else DeviceClock(self.setup.tick_ns, 16)
         self._held: list[tuple[bytes, int]] = []  # messages and arrivals until the tick's length is known
 

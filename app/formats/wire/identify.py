@@ -8,7 +8,19 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.formats.wire import gx1, gx1_talk, lines, mip, mip_talk, ngimu, witmotion, ximu3, xsens, xsens_talk
+from app.formats.wire import (
+    cells,
+    gx1,
+    gx1_talk,
+    lines,
+    mip,
+    mip_talk,
+    ngimu,
+    witmotion,
+    ximu3,
+    xsens,
+    xsens_talk,
+)
 from app.formats.wire.stream import Frames
 from app.formats.wire.talk import Ask, Script
 
@@ -62,7 +74,7 @@ _CANDIDATES = (
     _Candidate("ngimu", ngimu.frames, _is_known_osc, "OSC packets as an NGIMU sends them"),
     _Candidate("ximu3", ximu3.frames, _is_ximu3_data, "x-IMU3 messages"),
     _Candidate("gx1", gx1.frames, _any, "3DM-GX1 messages with sound checksums"),
-    _Candidate("csv", lines.frames, lines.readable, "text lines with a sensor's columns"),
+    _Candidate("csv", lines.frames, cells.readable, "text lines with a sensor's columns"),
 )
 
 

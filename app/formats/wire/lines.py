@@ -9,16 +9,23 @@ Axes: taken as z up, x ahead: say axes= otherwise.
 
 from __future__ import annotations
 
-import json
 import math
-import re
 from collections.abc import Callable, Mapping
-from itertools import pairwise
 from statistics import median
 
 from app.formats.mounting import Axes
 from app.formats.saturation import RANGES, Range
-from app.formats.units import G_MPS2
+from app.formats.wire.cells import (
+    are_words,
+    flat_object,
+    force_unit,
+    named_cells,
+    nanoseconds,
+    quad,
+    time_unit,
+    triple,
+    unwrapped,
+)
 from app.formats.wire.columns import UNITS, Columns, find_columns, is_unit, spelt
 from app.formats.wire.making import NED, Z_UP, Maker, Taker, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
@@ -36,9 +43,6 @@ _KEPT = 50  # rows to settle units by
 _TICKS_NS = {"s": 10**9, "sec": 10**9, "ms": 10**6, "us": 1000, "µs": 1000, "μs": 1000, "ns": 1}
 _NATIVE_COLUMNS = ["seq", "t", "ax", "ay", "az", "gx", "gy", "gz", "mx", "my", "mz"]
 _NATIVE_KEYS = {"acc": "force", "gyr": "rate", "mag": "field", "t": "time"}
-_CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d*)?)")
-_JSON = json.JSONDecoder(parse_int=str, parse_float=str)
-_LETTERS = re.compile(r"\$?[A-Za-z]+")
 
 Row = tuple[Columns, list[str], int]  # its columns, cells and arrival
 
@@ -115,19 +119,19 @@ class LinesDecoder:
         if not line:
             return None
         if line.startswith("{"):
-            names, cells = _object(line)
+            names, cells = flat_object(line)
         elif line.startswith("#"):
             self._comment(line)
             return None
         else:
-            checked = _unwrapped(line)
+            checked = unwrapped(line)
             if checked is None:
                 self.counters.bad_checksum += 1
                 return None
-            names, cells = _pairs(checked)
+            names, cells = named_cells(checked)
             if self._columns and len(cells) == self._columns.count + 1 and not cells[-1]:
                 cells = cells[:-1]
-            header = find_columns(cells) if not names and _are_words(cells) else None
+            header = find_columns(cells) if not names and are_words(cells) else None
             if header is not None:
                 self._columns, self._units = header, {}
                 return None
@@ -189,7 +193,7 @@ class LinesDecoder:
         """All four units; None where the force at rest fits none."""
         units = {kind: unit for kind, unit in known.items() if is_unit(kind, unit)}
         if "force" not in units:
-            forces = [v for columns, cells, _ in kept if (v := _triple(cells, columns.force)) is not None]
+            forces = [v for columns, cells, _ in kept if (v := triple(cells, columns.force)) is not None]
             unit = force_unit(median(math.hypot(*v) for v in forces)) if forces else None
             if unit is None:
                 self._note(
@@ -213,8 +217,8 @@ class LinesDecoder:
 
     def _read(self, row: Row) -> list[Sample]:
         columns, cells, host_ns = row
-        force, rate = _triple(cells, columns.force), _triple(cells, columns.rate)
-        field = None if columns.field is None else _triple(cells, columns.field)
+        force, rate = triple(cells, columns.force), triple(cells, columns.rate)
+        field = None if columns.field is None else triple(cells, columns.field)
         sample = None
         if force is not None and rate is not None:
             self._count_lost(columns, cells)
@@ -222,7 +226,7 @@ class LinesDecoder:
             if device_ns is not None:
                 f, w, m = self._factors
                 field = None if field is None else scaled(field, m)
-                q = _quad(cells, columns.orientation)
+                q = quad(cells, columns.orientation)
                 sample = self._maker.make(device_ns, host_ns, scaled(force, f), scaled(rate, w), field, 0, q)
         self.counters.dropped += sample is None
         return [] if sample is None else [sample]
@@ -233,7 +237,7 @@ class LinesDecoder:
         tick_ns = _TICKS_NS[self._units["time"]]
         cell = cells[columns.time]
         whole = cell.isascii() and cell.isdigit() and len(cell) <= 20 and tick_ns in (1000, 10**6)
-        ticks = int(cell) if whole else _nanoseconds(cell, tick_ns)
+        ticks = int(cell) if whole else nanoseconds(cell, tick_ns)
         if ticks is None:
             return None
         if self._clock is None:  # whole milli- and microseconds count in 32 bits and wrap
@@ -252,121 +256,6 @@ class LinesDecoder:
     def _note(self, sentence: str) -> None:
         if sentence not in self.notes:
             self.notes.append(sentence)
-
-
-def readable(line: bytes) -> bool:
-    """Whether a whole line reads like a sensor's: a header, named values, or six numbers."""
-    text = line.decode("utf-8", "replace").strip()
-    if text.startswith("{"):
-        return find_columns(_object(text)[0]) is not None
-    names, cells = _pairs(_unwrapped(text) or "")
-    if find_columns(names or cells) is not None:
-        return True
-    return sum(_number(cell) is not None for cell in cells) >= 6
-
-
-def force_unit(rest: float) -> str | None:
-    """The unit in which a still accelerometer reads this."""
-    for unit, expected in (("g", 1.0), ("m/s2", G_MPS2), ("mg", 1000.0)):
-        if abs(rest / expected - 1.0) < 0.2:
-            return unit
-    return None
-
-
-def time_unit(cells: list[str]) -> str:
-    """The unit of a time column by its median step; s where it does not tell."""
-    times = [value for cell in cells if (value := _number(cell)) is not None]
-    steps = [after - before for before, after in pairwise(times) if after > before]
-    step = median(steps) if steps else 0.0
-    return "s" if step < 0.5 else "ms" if step < 900 else "us" if step < 900_000 else "ns"
-
-
-def _number(cell: str) -> float | None:
-    if "_" in cell:  # Python would read 1_0 as 10
-        return None
-    try:
-        return float(cell)
-    except ValueError:
-        return None
-
-
-def _nanoseconds(cell: str, tick_ns: int) -> int | None:
-    """A time in whole nanoseconds, without passing through a float where it is decimal or h:m:s."""
-    clock = _CLOCK.fullmatch(cell)
-    if clock is not None:
-        return round((int(clock[1]) * 3600 + int(clock[2]) * 60 + float(clock[3])) * 1e9)
-    whole, _, fraction = cell.partition(".")
-    if (whole + fraction).isdigit() and cell.isascii() and len(cell) <= 40:
-        part = int(fraction or "0") * tick_ns / float(10 ** len(fraction))
-        return int(whole or "0") * tick_ns + round(part)
-    value = _number(cell)
-    return round(value * tick_ns) if value is not None and abs(value) < 1e18 else None
-
-
-def _triple(cells: list[str], places: tuple[int, int, int]) -> Vector | None:
-    i, j, k = places
-    try:
-        v = (float(cells[i]), float(cells[j]), float(cells[k]))
-    except ValueError:
-        return None
-    return None if "_" in cells[i] + cells[j] + cells[k] else v
-
-
-def _quad(cells: list[str], places: tuple[int, int, int, int] | None) -> Quaternion | None:
-    values = [] if places is None else [_number(cells[place]) for place in places]
-    w, x, y, z = values if len(values) == 4 else (None, None, None, None)
-    return None if w is None or x is None or y is None or z is None else (w, x, y, z)
-
-
-def _cells(line: str) -> list[str]:
-    """Cells by the first separator it has: comma, semicolon, tab, spaces."""
-    for separator in ",;\t":
-        if separator in line:
-            return [cell.strip() for cell in line.split(separator)]
-    return line.split()
-
-
-def _unwrapped(line: str) -> str | None:
-    """A line without ``IMU,`` or ``$IMU,…*hh`` around it; None if that checksum is wrong."""
-    if line.startswith("$") and "*" in line:
-        line, _, given = line.rpartition("*")
-        total = 0
-        for byte in line[1:].encode():
-            total ^= byte
-        if given.strip().upper() != f"{total:02X}":
-            return None
-    head, _, rest = line.partition(",")
-    return rest if _is_prefix(head, rest) else line
-
-
-def _is_prefix(head: str, rest: str) -> bool:
-    """A word before numbers is a prefix; before words it is a column's name."""
-    return _LETTERS.fullmatch(head) is not None and _number(rest.partition(",")[0]) is not None
-
-
-def _are_words(cells: list[str]) -> bool:
-    """Whether it can be a header: its first cell and five more begin with a letter."""
-    return cells[0][:1].isalpha() and sum(cell[:1].isalpha() for cell in cells) >= 6
-
-
-def _pairs(line: str) -> tuple[list[str], list[str]]:
-    """Names and values of ``name:value`` cells; a line of other cells has no names."""
-    cells = _cells(line)
-    pairs = [cell.split(":") for cell in cells if cell] if ":" in line else []
-    if pairs and all(len(pair) == 2 and pair[0] and not pair[0][0].isdigit() for pair in pairs):
-        return [pair[0] for pair in pairs], [pair[1].strip() for pair in pairs]
-    return [], cells
-
-
-def _object(line: str) -> tuple[list[str], list[str]]:
-    """Names and values of a flat JSON object; nothing where it is none."""
-    try:
-        read = _JSON.decode(line)
-    except (ValueError, RecursionError):
-        return ["?"], []
-    if not isinstance(read, dict):
-        return ["?"], []
-    return list(read), [value if isinstance(value, str) else "" for value in read.values()]
 
 
 class LinesEncoder:

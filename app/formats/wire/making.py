@@ -44,6 +44,7 @@ class Maker:
             _NEAR_RANGE * limit for limit in (full_scale.force, full_scale.rate, full_scale.field)
         )
         self._q_db = device_from_body(axes)
+        self._orientation(NED)  # the products are compiled on their first call: no sample waits for it
 
     def make(
         self,

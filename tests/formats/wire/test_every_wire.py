@@ -6,7 +6,7 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from tests.formats.wire.protocols import AXES, WIRES, Wire, adds_up, fed, packets, readings, walk
@@ -47,7 +47,6 @@ def test_what_is_sent_is_what_is_read(wire: Wire, axes) -> None:
 
 
 @every_stream
-@settings(max_examples=15)
 @given(cuts=st.lists(st.integers(0, 2000), max_size=40), seed=st.integers(0, 9))
 def test_the_cutting_of_the_stream_changes_nothing(wire: Wire, cuts: list[int], seed: int) -> None:
     stream = b"\x00rubbish\xff\xc0" + b"".join(packets(wire, walk(wire, 20, seed)))
@@ -129,7 +128,6 @@ def test_rubbish_between_packets_costs_none(wire: Wire) -> None:
 
 
 @every_wire
-@settings(max_examples=30)
 @given(chunks=st.lists(st.binary(max_size=400), max_size=6))
 def test_any_bytes_give_no_error_no_sample_and_keep_little(wire: Wire, chunks: list[bytes]) -> None:
     decoder = wire.decoder(wire.axes)
@@ -140,7 +138,6 @@ def test_any_bytes_give_no_error_no_sample_and_keep_little(wire: Wire, chunks: l
 
 
 @every_wire
-@settings(max_examples=30)
 @given(
     edits=st.lists(st.tuples(st.integers(0, 10_000), st.binary(max_size=8), st.integers(0, 8)), max_size=12),
     seed=st.integers(0, 3),

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.formats.units import G_MPS2
-from app.formats.wire.lines import LinesDecoder, force_unit, readable, time_unit
+from app.formats.wire.lines import LinesDecoder
 from app.motion import InputError, Sample
 
 HEADER = b"t_ms,ax_g,ay_g,az_g,gx_dps,gy_dps,gz_dps,mx_ut,my_ut,mz_ut\n"
@@ -175,28 +175,3 @@ def test_many_layouts_are_not_remembered_for_ever() -> None:
     for i in range(500):
         decoder.feed(f'{{"a{i}":1}}\n'.encode(), 0)
     assert len(decoder._named) <= 16
-
-
-@pytest.mark.parametrize(
-    ("rest", "unit"), [(1.02, "g"), (9.7, "m/s2"), (985.0, "mg"), (3.0, None), (0.0, None)]
-)
-def test_units_of_force(rest: float, unit: str | None) -> None:
-    assert force_unit(rest) == unit
-
-
-def test_a_time_that_stands_still_is_taken_for_seconds() -> None:
-    assert time_unit(["5", "5", "x"]) == "s"
-
-
-@pytest.mark.parametrize(
-    ("line", "verdict"),
-    [
-        (b"1,2,3,4,5,6\n", True),
-        (HEADER, True),
-        (b'{"hello":1}\n', False),
-        (b"1,2,3\n", False),
-        (b"hello, foot\n", False),
-    ],
-)
-def test_what_reads_like_a_sensor(line: bytes, verdict: bool) -> None:
-    assert readable(line) is verdict
