@@ -136,6 +136,23 @@ class Samples:
 
 
 @dataclass(frozen=True)
+class Journal:
+    """How a recording of ours came to be: the order in which samples and orders were taken.
+
+    ``arrivals`` [n] is which sensor (its place in ``Recording.sensors``) gave each sample, ``elapsed_ns``
+    [n] when, from the first. An order stands with the number of samples before it.
+    """
+
+    settings: Settings  # the main track's, when it began
+    candidate: Settings  # the sliders'
+    apply_at_once: bool
+    arrivals: Ints
+    elapsed_ns: Ints
+    orders: tuple[tuple[int, Order], ...] = ()
+    markers: tuple[tuple[float, str], ...] = ()  # seconds from the first sample, text
+
+
+@dataclass(frozen=True)
 class Recording:
     """A whole recording as the importers give it.
 
@@ -150,6 +167,7 @@ class Recording:
     assumed: tuple[str, ...] = ()
     spec: str | None = None
     dropped_rows: int = 0
+    journal: Journal | None = None  # a recording of ours
 
     @property
     def duration_s(self) -> float:

@@ -10,13 +10,27 @@ from pathlib import Path
 import pytest
 
 APP = Path(__file__).parent.parent / "app"
-HEART = {"session", "tracks", "trail", "truth", "graphs", "blocks", "warm", "motion", "settings", "rotation", "world"}
+HEART = {
+    "session",
+    "tracks",
+    "trail",
+    "truth",
+    "graphs",
+    "blocks",
+    "warm",
+    "motion",
+    "settings",
+    "rotation",
+    "world",
+}
 HEART |= {"estimator", "gestures", "simulate", "formats", "studies"}
-EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled"}
+EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed"}
 SHELL = {"run", "batch", "__main__", "__init__"}
 CLOCKS_AND_FILES = {"asyncio", "concurrent", "glob", "http", "multiprocessing", "os", "pathlib", "selectors"}
 CLOCKS_AND_FILES |= {"shutil", "socket", "ssl", "subprocess", "tempfile", "threading", "time", "urllib"}
-ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources"}
+ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources", "zstandard": "compressed"}
+#: Edges to tools that change how fast or how large, not what: everyone may use them.
+OPEN = {"compiled", "compressed"}
 STRANGERS = {frozenset({"estimator", "gestures"}), frozenset({"estimator", "simulate"})}
 
 
@@ -44,8 +58,8 @@ def faults(room: str, source: str) -> list[str]:
             "relative import": name.startswith("."),
             "import from another room's own": room != ONLY_IN.get(top, room),
             "heart to the outside": room in HEART and refused_by_the_heart(name),
-            "heart to an edge": room in HEART and other in EDGES - {"compiled"},
-            "edge to edge": room in EDGES and other in EDGES - {room, "compiled"},
+            "heart to an edge": room in HEART and other in EDGES - OPEN,
+            "edge to edge": room in EDGES and other in EDGES - OPEN - {room},
             "edge to the core": room in EDGES and other in {"session", "tracks", "estimator", "gestures"},
             "strangers": frozenset({room, other}) in STRANGERS,
             "to the shell": other in SHELL and room != "__main__",

@@ -20,13 +20,9 @@ _MOST = 1e6  # m/s², rad/s or µT; no sensor reads that, and its square would s
 
 def clean(raw: RawFoot) -> Samples:
     """The rows that count, and how many were dropped for which reason; ``InputError`` if none is left."""
-    finite = _usable(raw)
-    later = _later(raw.stamps_ns[finite])
-    dropped = {NOT_FINITE: int(len(finite) - finite.sum())}
-    dropped |= {REPEATED: int((later == 0).sum()), BACKWARD: int((later < 0).sum())}
-    rows = np.flatnonzero(finite)[later > 0]
+    rows, dropped = countable(raw)
     if not len(rows):
-        raise InputError(f"{raw.sensor}: none of {len(finite)} rows is finite, expected samples")
+        raise InputError(f"{raw.sensor}: none of {len(raw.stamps_ns)} rows is finite, expected samples")
     stamps_ns = raw.stamps_ns[rows]
     return Samples(
         sensor=raw.sensor,
@@ -34,8 +30,18 @@ def clean(raw: RawFoot) -> Samples:
         device_ns=int(stamps_ns[0]),
         matrix=_matrix(raw, rows, stamps_ns),
         saturation=np.zeros(len(rows), np.uint16),
-        dropped={reason: count for reason, count in dropped.items() if count},
+        dropped=dropped,
     )
+
+
+def countable(raw: RawFoot) -> tuple[Ints, dict[str, int]]:
+    """Which rows count, and how many others were dropped for which reason."""
+    finite = _usable(raw)
+    later = _later(raw.stamps_ns[finite])
+    dropped = {NOT_FINITE: int(len(finite) - finite.sum())}
+    dropped |= {REPEATED: int((later == 0).sum()), BACKWARD: int((later < 0).sum())}
+    rows = np.flatnonzero(finite)[later > 0]
+    return rows, {reason: count for reason, count in dropped.items() if count}
 
 
 def _usable(raw: RawFoot) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:

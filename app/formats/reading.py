@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.formats import gaitmap, microstrain, mounting, plain, pyshoe, xio
+from app.formats import gaitmap, kept, mcap, microstrain, mounting, plain, pyshoe, xio
 from app.formats.clean import clean
 from app.formats.mounting import Axes
 from app.formats.options import Options
@@ -18,7 +18,9 @@ from app.formats.swing import face_forward
 from app.formats.table import read_head, to_text
 from app.motion import InputError, Recording, Samples
 
-EXPECTED = "expected plain CSV, x-io, MicroStrain or gaitmap CSV, or a PyShoe MATLAB file"
+EXPECTED = (
+    "expected plain CSV, x-io, MicroStrain or gaitmap CSV, a PyShoe MATLAB file or a recording of Stridescope"
+)
 
 _NO_READINGS = ("", "t", "time", "timestamp", "index", "sample", "packet", "foot", "sensor")
 _FOREIGN = {
@@ -35,6 +37,8 @@ def read(name: str, data: bytes, options: Options | None = None) -> Recording:
     Raises ``InputError``, one line, when it is none, or when its units contradict the foot at rest.
     """
     told = options or Options()
+    if mcap.recognises(data):
+        return _ours(kept.read(name, data), told)
     parsed = _pick(name, _timed(_parse(name, data, told.rate_hz), told.rate_hz), told.foot)
     cleaned = [_clean(name, foot) for foot in parsed.feet]
     full_scale = RANGES[told.device or parsed.device or "csv"]
@@ -53,6 +57,20 @@ def read(name: str, data: bytes, options: Options | None = None) -> Recording:
         spec=parsed.spec,
         dropped_rows=_dropped_rows(sensors, parsed),
     )
+
+
+def _ours(recording: Recording, told: Options) -> Recording:
+    """A recording of ours says all of itself; only one foot of it can be asked for."""
+    for key, value in (("rate", told.rate_hz), ("axes", told.axes), ("device", told.device)):
+        if value is not None:
+            raise InputError(f"{recording.name}: {key}= is given, but a recording of ours says it itself")
+    if told.foot is None:
+        return recording
+    chosen = tuple(samples for samples in recording.sensors if samples.sensor == told.foot)
+    if not chosen:
+        holds = " and ".join(samples.sensor for samples in recording.sensors)
+        raise InputError(f"{recording.name}: foot={told.foot}, but it holds {holds}")
+    return replace(recording, sensors=chosen, journal=None)
 
 
 def _parse(name: str, data: bytes, rate_hz: float | None) -> Parsed:

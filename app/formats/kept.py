@@ -1,0 +1,307 @@
+"""Heart: the walk in an MCAP file of ours: what ``keeping`` wrote, to the bit, however much of it is left."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+from dataclasses import dataclass, field
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from app.formats import cdr, journal, keeping, mcap
+from app.formats.clean import countable
+from app.formats.raw import RawFoot
+from app.motion import (
+    Floats,
+    InputError,
+    Ints,
+    Journal,
+    Order,
+    Recording,
+    RestartHere,
+    Role,
+    Sample,
+    Samples,
+    Vector,
+    role_of,
+)
+from app.settings import Settings
+
+FORMAT = "Stridescope recording"
+#: Who begins a walk anew when a source does: the stamps start over, so what came before is another walk.
+SOURCE = "replay"
+
+
+class _Placed(NamedTuple):
+    """A message and its place among all messages of the file."""
+
+    place: int
+    message: mcap.Message
+
+
+@dataclass(frozen=True)
+class Readings:
+    """All samples of one sensor as they came, [n]: ``place`` is the message's place in the file."""
+
+    sensor: str
+    role: Role
+    place: Ints
+    seq: Ints
+    device_ns: Ints
+    host_ns: Ints
+    force: Floats  # [n, 3]
+    rate: Floats  # [n, 3]
+    field: Floats  # [n, 3] µT
+    has_field: NDArray[np.bool_]
+    saturation: NDArray[np.uint16]
+    q_nb: Floats  # [n, 4], NaN where the device has none
+
+    def __len__(self) -> int:
+        return len(self.place)
+
+
+@dataclass(frozen=True)
+class Kept:
+    """Everything in a file, in the order of the log. Places are those of ``Readings``."""
+
+    about: dict[str, Any]
+    readings: tuple[Readings, ...]
+    starts: tuple[tuple[int, journal.Start], ...]
+    orders: tuple[tuple[int, int, Order], ...]  # place, number, order
+    markers: tuple[tuple[int, str], ...]
+    events: tuple[dict[str, Any], ...]
+    closed: bool
+    messages: dict[str, int] = field(default_factory=dict)  # by topic
+
+
+def read(name: str, data: bytes) -> Recording:
+    """The last walk in the file, with the log of its orders; ``InputError`` if there is no sample."""
+    return recording_of(name, kept(name, data))
+
+
+def kept(name: str, data: bytes) -> Kept:
+    """Everything whole in a file; ``InputError`` if it is not one of ours."""
+    contents = mcap.read(data)
+    by_channel: dict[int, list[_Placed]] = {number: [] for number in contents.channels}
+    placed = (message for chunk in contents.chunks for message in chunk)
+    for place, message in enumerate(placed):
+        by_channel[message.channel].append(_Placed(place, message))
+    topics = {channel.topic: by_channel[number] for number, channel in contents.channels.items()}
+    if keeping.RECORDING not in topics:
+        whose = "another program's" if contents.channels else "no whole chunk in it"
+        raise InputError(f"{name}: an MCAP file, but {whose}, expected a recording of Stridescope")
+    about = [journal.from_json(item.message.data) for item in topics[keeping.RECORDING]]
+    starts = ((p, journal.read_start(m.data)) for p, m in topics.get(keeping.START, ()))
+    orders = ((p, journal.read_order(m.data)) for p, m in topics.get(keeping.ORDERS, ()))
+    texts = ((p, journal.from_json(m.data).get("text")) for p, m in topics.get(keeping.MARKERS, ()))
+    return Kept(
+        about=about[0] if about else {},
+        readings=_all_readings(name, contents, by_channel),
+        starts=tuple((p, start) for p, start in starts if start is not None),
+        orders=tuple((p, *order) for p, order in orders if order is not None),
+        markers=tuple((p, text) for p, text in texts if isinstance(text, str)),
+        events=tuple(journal.from_json(m.data) for _, m in topics.get(keeping.EVENTS, ())),
+        closed=contents.closed,
+        messages={topic: len(found) for topic, found in topics.items() if found},
+    )
+
+
+# --- samples -------------------------------------------------------------------------------------
+
+
+def _all_readings(
+    name: str, contents: mcap.Contents, by_channel: dict[int, list[_Placed]]
+) -> tuple[Readings, ...]:
+    sensors: dict[str, dict[str, list[_Placed]]] = {}
+    roles: dict[str, Role] = {}
+    clocks: dict[str, str] = {}
+    for number, channel in contents.channels.items():
+        metadata = dict(channel.metadata)
+        if {"sensor", "kind", "clock_ns"} <= set(metadata):
+            sensor = metadata["sensor"]
+            sensors.setdefault(sensor, {})[metadata["kind"]] = by_channel[number]
+            role = metadata.get("role", "")
+            roles[sensor] = Role(role) if role in set(Role) else role_of(sensor)
+            clocks[sensor] = metadata["clock_ns"]
+    try:
+        return tuple(
+            _readings(sensor, roles[sensor], int(clocks[sensor]), kinds)
+            for sensor, kinds in sensors.items()
+            if kinds.get(keeping.IMU)
+        )
+    except ValueError as error:
+        raise InputError(f"{name}: {error}, expected a recording of Stridescope") from None
+
+
+def _readings(sensor: str, role: Role, clock_ns: int, kinds: dict[str, list[_Placed]]) -> Readings:
+    imu = kinds[keeping.IMU]
+    place = np.array([item.place for item in imu], np.int64)
+    messages = [item.message for item in imu]
+    doubles = cdr.doubles_of([message.data for message in messages], cdr.IMU_DOUBLES)
+    q_nb, rate, force = cdr.imu_columns(doubles)
+    fields = kinds.get(keeping.FIELD, [])
+    rows = _rows(place, fields)
+    field_b = np.full((len(imu), 3), math.nan)
+    field_doubles = cdr.doubles_of([item.message.data for item in fields], cdr.MAGNETIC_DOUBLES)
+    field_b[rows] = cdr.microtesla(field_doubles)
+    has_field = np.zeros(len(imu), np.bool_)
+    has_field[rows] = True
+    saturation = np.zeros(len(imu), np.uint16)
+    extras = kinds.get(keeping.EXTRA, [])
+    for row, item in zip(_rows(place, extras).tolist(), extras, strict=True):
+        extra = journal.from_json(item.message.data)
+        saturation[row] = _whole(extra.get("saturation"))
+        exact = extra.get("field_ut")
+        if isinstance(exact, list) and len(exact) == 3 and all(isinstance(x, float | int) for x in exact):
+            field_b[row] = exact
+    return Readings(
+        sensor, role, place,
+        seq=np.array([message.sequence for message in messages], np.int64),
+        device_ns=np.array([message.publish_ns for message in messages], np.uint64).astype(np.int64),
+        host_ns=np.array([message.log_ns for message in messages], np.uint64).astype(np.int64) - clock_ns,
+        force=force, rate=rate, field=field_b, has_field=has_field, saturation=saturation, q_nb=q_nb,
+    )  # fmt: skip
+
+
+def _rows(place: Ints, before: list[_Placed]) -> Ints:
+    """The samples that messages which stand before them belong to."""
+    rows = np.searchsorted(place, np.array([item.place for item in before], np.int64))
+    if len(rows) and int(rows[-1]) >= len(place):
+        raise ValueError("a field without its sample")
+    return rows.astype(np.int64)
+
+
+def _whole(value: object) -> int:
+    return value if isinstance(value, int) and 0 <= value < 2**16 else 0
+
+
+def samples(found: Kept) -> list[Sample]:
+    """Every sample as it was taken, in that order."""
+    made = [(place, sample) for readings in found.readings for place, sample in _samples(readings)]
+    return [sample for _, sample in sorted(made, key=lambda item: item[0])]
+
+
+def _samples(readings: Readings) -> list[tuple[int, Sample]]:
+    def vectors(table: Floats) -> list[Vector]:
+        return [(x, y, z) for x, y, z in table.tolist()]
+
+    columns = zip(
+        readings.place.tolist(), readings.seq.tolist(),
+        readings.device_ns.tolist(), readings.host_ns.tolist(),
+        vectors(readings.force), vectors(readings.rate), vectors(readings.field), readings.has_field.tolist(),
+        readings.saturation.tolist(), readings.q_nb.tolist(), strict=True,
+    )  # fmt: skip
+    return [
+        (
+            place,
+            Sample(
+                readings.sensor, seq, device_ns, host_ns, force, rate, field_b if has_field else None,
+                saturation, None if math.isnan(q_nb[0]) else (q_nb[0], q_nb[1], q_nb[2], q_nb[3]),
+            ),
+        )
+        for place, seq, device_ns, host_ns, force, rate, field_b, has_field, saturation, q_nb in columns
+    ]  # fmt: skip
+
+
+# --- as a recording ------------------------------------------------------------------------------
+
+
+def recording_of(name: str, found: Kept) -> Recording:
+    """The last walk of a file: what came since its source last began anew."""
+    begin = _last_begin(found)
+    raws = [(readings, readings.place >= begin) for readings in found.readings]
+    sensors, places, hosts = [], [], []
+    for readings, here in raws:
+        rows, dropped = countable(_raw(readings, here))
+        if len(rows):
+            rows = np.flatnonzero(here)[rows]
+            sensors.append(_columns(readings, rows, dropped))
+            places.append(readings.place[rows])
+            hosts.append(int(readings.host_ns[rows[0]]))
+    if not sensors:
+        raise InputError(f"{name}: a recording without one usable sample, expected samples")
+    return Recording(
+        name=name,
+        format=FORMAT,
+        sensors=tuple(sensors),
+        assumed=_sentences(found),
+        spec=_text(found.about.get("spec")),
+        dropped_rows=sum(sum(samples.dropped.values()) for samples in sensors),
+        journal=_journal(found, begin, sensors, places, hosts),
+    )
+
+
+def _last_begin(found: Kept) -> int:
+    """The place of the last start that samples follow; 0 where the only one is the first."""
+    last = max((int(readings.place[-1]) for readings in found.readings), default=0)
+    return max((place for place, _ in found.starts if place < last), default=0)
+
+
+def _raw(readings: Readings, here: NDArray[np.bool_]) -> RawFoot:
+    return RawFoot(readings.sensor, readings.device_ns[here], readings.force[here], readings.rate[here])
+
+
+def _columns(readings: Readings, rows: Ints, dropped: dict[str, int]) -> Samples:
+    stamps = readings.device_ns[rows]
+    matrix = np.column_stack([
+        (stamps - stamps[0]).astype(np.float64),
+        readings.force[rows], readings.rate[rows], readings.field[rows],
+    ])  # fmt: skip
+    matrix[~(np.abs(matrix[:, 7:10]) < 1e6).all(axis=1), 7:10] = math.nan
+    return Samples(
+        readings.sensor, readings.role, int(stamps[0]), matrix, readings.saturation[rows].copy(), dropped
+    )
+
+
+def _journal(
+    found: Kept, begin: int, sensors: list[Samples], places: list[Ints], hosts: list[int]
+) -> Journal:
+    merged = np.concatenate(places)
+    order = np.argsort(merged)
+    elapsed = np.concatenate([
+        samples.matrix[:, 0].astype(np.int64) + (host - min(hosts))
+        for samples, host in zip(sensors, hosts, strict=True)
+    ])  # fmt: skip
+    elapsed_ns = np.maximum.accumulate(elapsed[order])
+    merged = merged[order]
+    start = next((start for place, start in reversed(found.starts) if place <= begin), None)
+    start = start or next((start for _, start in found.starts), None)
+    start = start or journal.Start(Settings(), Settings(), False)
+    orders = (
+        (int(np.searchsorted(merged, place)), order)
+        for place, _, order in found.orders
+        if place >= begin and not (isinstance(order.command, RestartHere) and order.who == SOURCE)
+    )
+    marks = ((int(np.searchsorted(merged, place)), text) for place, text in found.markers if place >= begin)
+    return Journal(
+        settings=start.settings,
+        candidate=start.candidate,
+        apply_at_once=start.apply_at_once,
+        arrivals=np.repeat(np.arange(len(sensors)), [len(s) for s in sensors])[order],
+        elapsed_ns=elapsed_ns,
+        orders=tuple(orders),
+        markers=tuple((float(elapsed_ns[max(place - 1, 0)]) * 1e-9, text) for place, text in marks),
+    )
+
+
+def _sentences(found: Kept) -> tuple[str, ...]:
+    said = found.about.get("assumed")
+    sentences = [text for text in said if isinstance(text, str)] if isinstance(said, list) else []
+    source = _text(found.about.get("source"))
+    sentences += [f"recorded from {source}"] if source else []
+    sentences += [] if found.closed else ["the recording was cut short: what is whole of it is shown"]
+    lost = sum(_whole(event.get("samples")) for event in found.events if event.get("event") == "lost")
+    sentences += [f"{lost} samples were not recorded: the disk was too slow"] if lost else []
+    return tuple(sentences)
+
+
+def _text(value: object) -> str | None:
+    return value if isinstance(value, str) and value else None
+
+
+def lost_seqs(readings: Readings) -> int:
+    """Samples missing between the first and the last, by their sequence numbers."""
+    steps = Counter(np.diff(readings.seq).tolist())
+    return sum((step - 1) * count for step, count in steps.items() if step > 1)

@@ -1,0 +1,278 @@
+"""Heart: MCAP containers: chunks of messages with a CRC, written in order, read as a stream.
+
+https://mcap.dev/spec. Schemas and channels stand inside the chunks, where the CRC covers them. A chunk
+is found by its mark and believed only by its CRC, so a damaged or cut file gives all that is whole.
+"""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from typing import NamedTuple
+
+from app.compressed import LARGEST, pack, unpack
+
+MAGIC = b"\x89MCAP0\r\n"
+LIBRARY = "stridescope"
+
+_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(1, 9)
+_STATISTICS, _SUMMARY_OFFSET, _DATA_END = 0x0B, 0x0E, 0x0F
+_COMPRESSION = b"\x04\x00\x00\x00zstd"
+_RECORD = struct.Struct("<BQ")
+_CHUNK_HEAD = struct.Struct("<BQQQQI8sQ")  # opcode, length, start, end, size, crc, "zstd", packed size
+_MARK_AT = 37  # of the compression's name in a chunk
+_MESSAGE_HEAD = struct.Struct("<BQHIQQ")
+
+
+class Channel(NamedTuple):
+    """Where messages of one kind go. A CDR message's ``schema`` is ros2msg, a JSON one's jsonschema."""
+
+    id: int
+    topic: str
+    encoding: str  # "cdr" | "json"
+    schema: str
+    definition: bytes
+    metadata: tuple[tuple[str, str], ...] = ()
+
+
+class Message(NamedTuple):
+    """One message as it stands in a chunk."""
+
+    channel: int
+    sequence: int
+    log_ns: int
+    publish_ns: int
+    data: bytes
+
+
+def _string(text: str) -> bytes:
+    data = text.encode()
+    return struct.pack("<I", len(data)) + data
+
+
+def _record(opcode: int, content: bytes) -> bytes:
+    return _RECORD.pack(opcode, len(content)) + content
+
+
+def _definitions(channel: Channel) -> bytes:
+    """The channel's schema (of the same number) and the channel."""
+    encoding = "ros2msg" if channel.encoding == "cdr" else "jsonschema"
+    schema = struct.pack("<H", channel.id) + _string(channel.schema) + _string(encoding)
+    schema += struct.pack("<I", len(channel.definition)) + channel.definition
+    pairs = b"".join(_string(key) + _string(value) for key, value in channel.metadata)
+    body = struct.pack("<HH", channel.id, channel.id) + _string(channel.topic) + _string(channel.encoding)
+    return _record(_SCHEMA, schema) + _record(_CHANNEL, body + struct.pack("<I", len(pairs)) + pairs)
+
+
+# --- writing -------------------------------------------------------------------------------------
+
+
+@dataclass
+class Writer:
+    """Turns channels and messages into the bytes of a file, in order; knows no file itself.
+
+    ``chunk`` closes what came since the last one; every ``repeat``-th defines all channels again.
+    """
+
+    repeat: int = 32
+    channels: list[Channel] = field(default_factory=list)
+    size: int = 0  # bytes given out so far
+    counts: dict[int, int] = field(default_factory=dict)
+    _new: list[Channel] = field(default_factory=list)
+    _messages: list[Message] = field(default_factory=list)
+    _indexes: list[bytes] = field(default_factory=list)
+    _span: tuple[int, int] = (2**64 - 1, 0)
+
+    def begin(self) -> bytes:
+        """The first bytes of a file."""
+        return self._out(MAGIC + _record(_HEADER, _string("") + _string(LIBRARY)))
+
+    def channel(
+        self,
+        topic: str,
+        encoding: str,
+        schema: str,
+        definition: str,
+        metadata: tuple[tuple[str, str], ...] = (),
+    ) -> int:
+        """A new channel's number."""
+        made = Channel(len(self.channels) + 1, topic, encoding, schema, definition.encode(), metadata)
+        self.channels.append(made)
+        self._new.append(made)
+        return made.id
+
+    def add(self, channel: int, sequence: int, log_ns: int, publish_ns: int, data: bytes) -> None:
+        """One message for the next chunk; the numbers are kept modulo their width."""
+        numbers = (sequence % 2**32, log_ns % 2**64, publish_ns % 2**64)
+        self._messages.append(Message(channel, *numbers, data))
+
+    def chunk(self) -> bytes:
+        """Close a chunk: its bytes, ready to be synced; none if there is nothing to say."""
+        if not self._messages:
+            return b""
+        again = len(self._indexes) % self.repeat == 0
+        parts = [_definitions(channel) for channel in (self.channels if again else self._new)]
+        offset = sum(map(len, parts))
+        index: dict[int, list[int]] = {}
+        for channel, sequence, log_ns, publish_ns, data in self._messages:
+            index.setdefault(channel, []).extend((log_ns, offset))
+            head = _MESSAGE_HEAD.pack(_MESSAGE, 22 + len(data), channel, sequence, log_ns, publish_ns)
+            parts += (head, data)
+            offset += len(head) + len(data)
+        start = min(message.log_ns for message in self._messages)
+        end = max(message.log_ns for message in self._messages)
+        self._span = (min(start, self._span[0]), max(end, self._span[1]))
+        self._messages, self._new = [], []
+        return self._out(self._chunk(b"".join(parts), start, end, index))
+
+    def _chunk(self, records: bytes, start: int, end: int, index: dict[int, list[int]]) -> bytes:
+        packed = pack(records)
+        head = struct.pack("<QQQI", start, end, len(records), zlib.crc32(records))
+        body = _record(_CHUNK, head + _COMPRESSION + struct.pack("<Q", len(packed)) + packed)
+        indexes: list[bytes] = []
+        places: list[bytes] = []
+        after = self.size + len(body)
+        for channel, pairs in index.items():
+            self.counts[channel] = self.counts.get(channel, 0) + len(pairs) // 2
+            places.append(struct.pack("<HQ", channel, after + sum(map(len, indexes))))
+            entry = struct.pack(f"<HI{len(pairs)}Q", channel, 8 * len(pairs), *pairs)
+            indexes.append(_record(_MESSAGE_INDEX, entry))
+        tail = b"".join(places)
+        place = struct.pack("<QQQQI", start, end, self.size, len(body), len(tail)) + tail
+        place += struct.pack("<Q", sum(map(len, indexes))) + _COMPRESSION
+        self._indexes.append(_record(_CHUNK_INDEX, place + struct.pack("<QQ", len(packed), len(records))))
+        return body + b"".join(indexes)
+
+    def end(self) -> bytes:
+        """The last bytes: a summary, so that other tools can seek."""
+        data_end = _record(_DATA_END, struct.pack("<I", 0))
+        groups = [
+            (_SCHEMA, b"".join(_definitions(channel) for channel in self.channels)),
+            (_STATISTICS, _record(_STATISTICS, self._statistics())),
+            (_CHUNK_INDEX, b"".join(self._indexes)),
+        ]
+        summary = b"".join(group for _, group in groups)
+        start = self.size + len(data_end)
+        footer = _RECORD.pack(_FOOTER, 20) + struct.pack("<QQ", start, 0)
+        crc = struct.pack("<I", zlib.crc32(summary + footer))
+        return self._out(data_end + summary + footer + crc + MAGIC)
+
+    def _statistics(self) -> bytes:
+        start, end = self._span if self.counts else (0, 0)
+        numbers = (sum(self.counts.values()), len(self.channels), len(self.channels), 0, 0)
+        counts = b"".join(struct.pack("<HQ", channel, count) for channel, count in self.counts.items())
+        head = struct.pack("<QHIIIIQQI", *numbers, len(self._indexes), start, end, len(counts))
+        return head + counts
+
+    def _out(self, data: bytes) -> bytes:
+        self.size += len(data)
+        return data
+
+
+# --- reading -------------------------------------------------------------------------------------
+
+
+class Contents(NamedTuple):
+    """What is whole in a file: channels by number, chunks' messages in order, and whether it was closed."""
+
+    channels: dict[int, Channel]
+    chunks: tuple[tuple[Message, ...], ...]
+    closed: bool
+
+
+def recognises(data: bytes) -> bool:
+    """Whether the bytes begin as an MCAP file does."""
+    return data.startswith(MAGIC)
+
+
+def read(data: bytes) -> Contents:
+    """Everything whole in a file, damaged or cut or not; it never raises."""
+    channels: dict[int, Channel] = {}
+    chunks = []
+    for records in whole_chunks(data):
+        found = _messages(records, channels)
+        if found is not None:
+            chunks.append(tuple(found))
+    known = tuple(tuple(m for m in chunk if m.channel in channels) for chunk in chunks)
+    return Contents(channels, known, data.endswith(MAGIC) and len(data) > 2 * len(MAGIC))
+
+
+def whole_chunks(data: bytes) -> Iterator[bytes]:
+    """The records of every chunk whose CRC is good, in the file's order."""
+    position = len(MAGIC)
+    while (mark := data.find(_COMPRESSION, position + _MARK_AT)) >= 0:
+        begin = mark - _MARK_AT
+        records, length = _unpacked(data, begin)
+        if records is None:
+            position = begin + 1
+        else:
+            yield records
+            position = begin + length
+
+
+def _unpacked(data: bytes, begin: int) -> tuple[bytes | None, int]:
+    """The records of a chunk that begins there, if one does, and the chunk's length."""
+    if len(data) - begin < _CHUNK_HEAD.size:
+        return None, 0
+    opcode, _, _, _, size, crc, _, packed = _CHUNK_HEAD.unpack_from(data, begin)
+    length = _CHUNK_HEAD.size + packed
+    if opcode != _CHUNK or size > LARGEST or begin + length > len(data):
+        return None, 0
+    records = unpack(data[begin + _CHUNK_HEAD.size : begin + length], size)
+    return (records if records is not None and zlib.crc32(records) == crc else None), length
+
+
+def _messages(records: bytes, channels: dict[int, Channel]) -> list[Message] | None:
+    """The messages of a chunk; its channels go into ``channels``. None if it is not what the CRC promised."""
+    found: list[Message] = []
+    schemas: dict[int, tuple[str, bytes]] = {}
+    position = 0
+    try:
+        while position < len(records):
+            opcode, length = _RECORD.unpack_from(records, position)
+            content, position = position + _RECORD.size, position + _RECORD.size + length
+            if position > len(records):
+                return None
+            if opcode == _MESSAGE:
+                _, _, *head = _MESSAGE_HEAD.unpack_from(records, content - _RECORD.size)
+                channel_id, sequence, log_ns, publish_ns = head
+                data = records[content + 22 : position]
+                found.append(Message(channel_id, sequence, log_ns, publish_ns, data))
+            elif opcode == _SCHEMA:
+                number, name, definition = _schema(records[content:position])
+                schemas[number] = (name, definition)
+            elif opcode == _CHANNEL:
+                channel = _channel(records[content:position], schemas)
+                channels.setdefault(channel.id, channel)
+    except (struct.error, UnicodeDecodeError, KeyError):
+        return None
+    return found
+
+
+def _text(data: bytes, at: int) -> tuple[str, int]:
+    (length,) = struct.unpack_from("<I", data, at)
+    return data[at + 4 : at + 4 + length].decode(), at + 4 + length
+
+
+def _schema(data: bytes) -> tuple[int, str, bytes]:
+    (number,) = struct.unpack_from("<H", data)
+    name, at = _text(data, 2)
+    _, at = _text(data, at)
+    return number, name, data[at + 4 :]
+
+
+def _channel(data: bytes, schemas: dict[int, tuple[str, bytes]]) -> Channel:
+    number, schema = struct.unpack_from("<HH", data)
+    topic, at = _text(data, 4)
+    encoding, at = _text(data, at)
+    (length,) = struct.unpack_from("<I", data, at)
+    at, end = at + 4, at + 4 + length
+    pairs = []
+    while at < end:
+        key, at = _text(data, at)
+        value, at = _text(data, at)
+        pairs.append((key, value))
+    name, definition = schemas[schema]
+    return Channel(number, topic, encoding, name, definition, tuple(pairs))

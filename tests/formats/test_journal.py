@@ -1,0 +1,66 @@
+"""Orders and settings as JSON and back."""
+
+from __future__ import annotations
+
+from typing import get_args
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from app import motion as m
+from app.formats import journal
+from app.settings import Settings
+
+COMMANDS = [
+    m.SetCandidate((("gain_swing", 0.1 + 0.2), ("magnetometer", True), ("estimator", "papers"))),
+    m.ReplaceCandidate(Settings().with_changes({"gain_swing": 0.3}), "profile Ann"),
+    m.ApplyCandidate(),
+    m.DropCandidate(),
+    m.Undo(),
+    m.SetApplyAtOnce(True),
+    m.KeepAs("B"),
+    m.SwapAB(),
+    m.ResetHeading(),
+    m.RestartHere(),
+]
+
+
+def test_no_command_of_a_session_is_forgotten() -> None:
+    assert {type(command) for command in COMMANDS} == set(get_args(m.SessionCommand))
+
+
+@pytest.mark.parametrize("command", COMMANDS, ids=lambda c: type(c).__name__)
+def test_an_order_comes_back(command: m.SessionCommand) -> None:
+    order = m.Order(command, "Ann <i>", 12345678901234567)
+    assert journal.read_order(journal.write_order(7, order)) == (7, order)
+
+
+def test_a_start_comes_back() -> None:
+    start = journal.Start(Settings(), Settings().with_changes({"gain_stance": 0.2}), True)
+    assert journal.read_start(journal.write_start(start)) == start
+
+
+anything = st.recursive(
+    st.none() | st.booleans() | st.integers() | st.floats() | st.text(max_size=9),
+    lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
+    max_leaves=8,
+)
+KEYS = ("number", "who", "host_ns", "changes", "settings", "reason", "on", "slot")
+
+
+@given(
+    st.sampled_from([type(c).__name__ for c in COMMANDS]), st.dictionaries(st.sampled_from(KEYS), anything)
+)
+def test_any_json_is_an_order_or_none(name: str, content: dict[str, object]) -> None:
+    data = journal.to_json({"number": 1, "who": "Ann", "host_ns": 2, **content, "command": name})
+    found = journal.read_order(data)
+    if found is not None:
+        again = journal.read_order(journal.write_order(*found))
+        assert repr(again) == repr(found)
+
+
+@given(st.binary(max_size=60))
+def test_rubbish_is_no_order(data: bytes) -> None:
+    assert journal.read_order(data) is None
+    assert journal.read_start(data) is None
