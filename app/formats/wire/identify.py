@@ -92,21 +92,24 @@ def identify(data: bytes) -> Found | None:
 
 
 class Identifier:
-    """Listens until it knows. ``datagrams``: each feed is one datagram, and OSC comes without SLIP."""
+    """Listens until it knows. ``datagrams``: each feed is one datagram, and OSC comes without SLIP.
+
+    ``heard`` is what it listened to, at most 16 kB. The decoder gets it first: a text's header comes once.
+    """
 
     def __init__(self, datagrams: bool = False) -> None:
-        self._datagrams = datagrams
-        self._data = b""
+        self.heardgrams = datagrams
+        self.heard = b""
         self._osc = 0
 
     def feed(self, data: bytes) -> Found | None:
         """What it is, as soon as that is certain."""
-        if self._datagrams and _knows(data):
+        if self.heardgrams and _knows(data):
             self._osc += 1
             if self._osc >= _ENOUGH:
                 return Found("ngimu", f"{self._osc} datagrams of OSC as an NGIMU sends them")
-        self._data = (self._data + data)[-_KEPT:]
-        return identify(self._data)
+        self.heard = (self.heard + data)[-_KEPT:]
+        return identify(self.heard)
 
 
 def probe() -> Script[Found | None]:

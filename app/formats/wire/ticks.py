@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from itertools import combinations
+from statistics import median
+
 from app.motion import GAP_NS
 
 _SLACK_NS = 1_000_000_000  # a device step may exceed the host's by this before it is suspect
@@ -62,44 +65,63 @@ class DeviceClock:
 
 
 class TickLength:
-    """How long a tick is, told by the host's clock: a line through five seconds, snapped to what is known."""
+    """How long a tick is, told by the host's clock: a line through five seconds, snapped to what is known.
+
+    Bursts and a backlog at the start only delay: of each tenth the least delayed reading counts, and
+    the line is the median of all slopes between tenths (Theil and Sen).
+    """
 
     SPAN_NS = 5_000_000_000
     NEAR = 0.02
-    MOST = 4096  # so many readings without five seconds: a stream fed at once, by no clock
+    MOST = 8192  # so many readings without five seconds: a stream fed at once, by no clock
 
     def __init__(self, known_ns: tuple[int, ...], bits: int) -> None:
         self.snapped = False  # whether the length found is one of the known
         self._known_ns = known_ns
         self._wrap = 1 << bits
-        self._points: list[tuple[int, int]] = []  # ticks and host time since the first
+        self._points: list[tuple[int, int]] = []  # ticks, made to run on, and host time
 
     def add(self, ticks: int, host_ns: int) -> int | None:
-        """The length of a tick in ns once five seconds have passed, else None.
+        """The length of a tick in ns once five seconds have passed (ten, if it fits no known), else None.
 
         The first known length, not snapped, where the host's clock does not tell.
         """
         points = self._points
         if points:
-            last_ticks, _ = points[-1]
-            ticks = last_ticks + (ticks - last_ticks) % self._wrap
+            ticks = points[-1][0] + (ticks - points[-1][0]) % self._wrap
         points.append((ticks, host_ns))
-        if len(points) >= self.MOST:
+        passed_ns = host_ns - points[0][1]
+        if len(points) >= self.MOST and passed_ns < self.SPAN_NS:
             return self._known_ns[0]
-        if host_ns - points[0][1] < self.SPAN_NS or ticks == points[0][0]:
+        if (
+            passed_ns < self.SPAN_NS
+            or len(points) < 20
+            or (passed_ns < 2 * self.SPAN_NS and len(points) % 50)
+        ):
             return None
-        measured_ns = self._slope()
-        nearest = min(self._known_ns, key=lambda known: abs(known - measured_ns))
-        self.snapped = abs(nearest - measured_ns) <= self.NEAR * nearest
-        return nearest if self.snapped else max(round(measured_ns), 1)
+        measured_ns, nearest_ns = self._measure()
+        self.snapped = abs(nearest_ns - measured_ns) <= self.NEAR * nearest_ns
+        if self.snapped:
+            return nearest_ns
+        return max(round(measured_ns), 1) if passed_ns >= 2 * self.SPAN_NS else None
 
-    def _slope(self) -> float:
-        """Nanoseconds a tick, by least squares."""
-        n = len(self._points)
-        mean_ticks = sum(ticks for ticks, _ in self._points) / n
-        mean_ns = sum(host_ns for _, host_ns in self._points) / n
-        with_ns = sum((ticks - mean_ticks) * (host_ns - mean_ns) for ticks, host_ns in self._points)
-        return with_ns / sum((ticks - mean_ticks) ** 2 for ticks, _ in self._points)
+    def _measure(self) -> tuple[float, int]:
+        """Nanoseconds a tick as measured, and the known length nearest to it."""
+        measured_ns = self._slope(self._points[:: max(len(self._points) // 10, 1)])
+        for _ in range(2):  # the least delayed readings are seen better once the slope is
+            measured_ns = self._slope(self._least_delayed(measured_ns))
+        return measured_ns, min(self._known_ns, key=lambda known: abs(known - measured_ns))
+
+    def _least_delayed(self, tick_ns: float) -> list[tuple[int, int]]:
+        tenth = max(len(self._points) // 10, 1)
+        tenths = (self._points[at : at + tenth] for at in range(0, len(self._points), tenth))
+        return [min(part, key=lambda point: point[1] - point[0] * tick_ns) for part in tenths]
+
+    @staticmethod
+    def _slope(points: list[tuple[int, int]]) -> float:
+        pairs = combinations(points, 2)
+        slopes = [(b[1] - a[1]) / (b[0] - a[0]) for a, b in pairs if b[0] > a[0]]
+        return median(slopes) if slopes else 0.0
 
 
 class ArrivalClock:

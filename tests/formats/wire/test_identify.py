@@ -61,6 +61,13 @@ def test_listening_ends_when_it_is_certain() -> None:
     assert heard[2] == Found("gx1", "3 3DM-GX1 messages with sound checksums in 93 bytes")
 
 
+def test_what_was_heard_is_not_lost_to_the_decoder() -> None:
+    wire = next(wire for wire in WIRES if wire.name == "lines-csv")
+    ear, sent = Identifier(), packets(wire, walk(wire, 20))
+    heard = next(i for i, packet in enumerate(sent) if ear.feed(packet) is not None)
+    assert len(wire.decoded(ear.heard + b"".join(sent[heard + 1 :]))) == 20
+
+
 @pytest.mark.parametrize("name", ["ngimu-udp", "ximu3-binary", "ximu3-ascii", "lines-json"])
 def test_datagrams_are_known_too(name: str) -> None:
     wire = next(wire for wire in WIRES if wire.name == name)

@@ -82,7 +82,21 @@ def test_the_ticks_length_is_seen_through_bursts_and_drift(true_ms: float, start
             break
     assert found == round(true_ms * MS)
     assert length.snapped
-    assert 5.0 <= host_ns / 1e9 < 5.2
+    assert 5.0 <= host_ns / 1e9 < 6.5
+
+
+@pytest.mark.parametrize("backlog_ms", [400, 1000])
+def test_a_backlog_at_the_start_does_not_lengthen_the_tick(backlog_ms: int) -> None:
+    """The host was busy while the first samples waited; then they came at once."""
+    length = TickLength((6_553_600, MS, 3 * MS, 10 * MS), 16)
+    found = [length.add(3 * i & 0xFFFF, max(3 * i, backlog_ms) * MS) for i in range(3000)]
+    assert next(tick for tick in found if tick is not None) == MS
+    assert length.snapped
+
+
+def test_a_counter_that_stands_still_raises_nothing() -> None:
+    length = TickLength((MS,), 16)
+    assert [length.add(7, i * 100 * MS) for i in range(110)][-1] is not None
 
 
 def test_an_unknown_tick_is_measured_and_no_host_clock_means_the_usual_one() -> None:
