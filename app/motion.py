@@ -372,8 +372,22 @@ class Loop:
     on: bool
 
 
+@dataclass(frozen=True)
+class Record:
+    """Begin or end a recording."""
+
+    on: bool
+
+
+@dataclass(frozen=True)
+class Mark:
+    """Mark this moment in the recording."""
+
+    text: str = ""
+
+
 ReplayCommand = Pause | Step | Speed | Seek | Loop
-Command = SessionCommand | FindGains | LoadProfile | SaveProfile | ReplayCommand
+Command = SessionCommand | FindGains | LoadProfile | SaveProfile | ReplayCommand | Record | Mark
 
 
 class Order(NamedTuple):
@@ -512,6 +526,17 @@ class Link(StrEnum):
     LOST = "lost"
 
 
+class RecorderState(NamedTuple):
+    """The recording under way, or the last one."""
+
+    name: str  # of the file
+    on: bool
+    seconds: float
+    size_bytes: int
+    free_bytes: int  # on its disk
+    trouble: str = ""  # one line for a red banner
+
+
 @dataclass(frozen=True)
 class Status:
     """What the shell knows and the session cannot: clocks, files, the source's state."""
@@ -527,6 +552,7 @@ class Status:
     sweep: Sweep | None = None
     sweep_progress: float | None = None  # 0…1 while it runs
     profiles: tuple[str, ...] = ()
+    recording: RecorderState | None = None
 
 
 @dataclass(frozen=True)

@@ -18,14 +18,16 @@ _log = logging.getLogger(__name__)
 _SAME = 1e-6  # m/s², rad/s: another machine's sines differ in the last digits
 
 
-def open_source(spec_text: str, *, finish: bool = False) -> Replay:
+def open_source(spec_text: str, *, finish: bool = False, changes: bool = True) -> Replay:
     """The source a SPEC names, at the pace it asks for; ``InputError`` if there is none.
 
-    ``finish``: the source ends after the last sample instead of waiting for a seek.
+    ``finish``: the source ends after the last sample instead of waiting for a seek. ``changes``: a
+    recording of ours repeats the changes made to its walk, if the SPEC does not say otherwise.
     """
     spec = parse_spec(spec_text)
     recording, truth = open_recording(spec)
-    return Replay(recording, speed=spec.speed, loop=spec.loop, finish=finish, truth=truth)
+    changes = changes and spec.changes
+    return Replay(recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes, truth=truth)
 
 
 def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:

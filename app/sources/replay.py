@@ -14,19 +14,27 @@ from collections.abc import AsyncIterator
 from typing import Protocol
 
 from app.motion import (
+    ApplyCandidate,
+    Command,
+    DropCandidate,
     InputError,
+    Journal,
     Loop,
+    Order,
     Pause,
     Recording,
+    ReplaceCandidate,
     ReplayCommand,
     RestartHere,
     Sample,
     Seek,
+    SetApplyAtOnce,
     SourceInfo,
     Speed,
     Step,
     Truth,
 )
+from app.settings import Settings
 from app.sources.spec import FASTEST, SLOWEST
 from app.sources.timeline import Timeline
 
@@ -64,7 +72,8 @@ class HostClock:
 class Replay:
     """A source over a recording: iterate it once, steer it by ``control``.
 
-    It yields samples, and ``RestartHere`` before it begins anew. At the end it waits for a seek or
+    It yields samples, a recording's own orders between them (unless ``changes`` is off), and
+    ``RestartHere`` before it begins anew. At the end it waits for a seek or
     a loop, unless ``finish`` is set. ``speed`` 0 is as fast as the reader takes them.
     """
 
@@ -75,6 +84,7 @@ class Replay:
         speed: float = 1.0,
         loop: bool = False,
         finish: bool = False,
+        changes: bool = True,
         truth: Truth | None = None,
         clock: Clock | None = None,
     ) -> None:
@@ -87,12 +97,19 @@ class Replay:
         self._finish = finish
         self._clock = clock or HostClock()
         self._timeline = Timeline(recording)
+        self._journal = recording.journal if changes else None
+        self._orders = orders_by_place(self._journal)
         self._next = 0  # the first sample not yet released
         self._begun = False  # the playhead waits for the reader
         self._restart = False
         self._jump: tuple[int, int] | None = None  # release up to this sample at once; the playhead then
         self._anchor = (self._clock.now_ns(), 0)  # host time, playhead
         self._news = asyncio.Event()
+
+    @property
+    def settings(self) -> Settings | None:
+        """What the recorded walk began with, if it is to be repeated with its changes."""
+        return self._journal.settings if self._journal else None
 
     @property
     def duration_s(self) -> float:
@@ -122,10 +139,12 @@ class Replay:
                 self.loop = on
         self._news.set()
 
-    def __aiter__(self) -> AsyncIterator[Sample | RestartHere]:
+    def __aiter__(self) -> AsyncIterator[Sample | Order | RestartHere]:
         return self._play()
 
-    async def _play(self) -> AsyncIterator[Sample | RestartHere]:
+    async def _play(self) -> AsyncIterator[Sample | Order | RestartHere]:
+        for order in opening_orders(self._journal, anew=False):
+            yield order
         self._move_anchor(self._playhead_ns())
         self._begun = True
         breath_ns = self._clock.now_ns()
@@ -134,11 +153,18 @@ class Replay:
             if self._restart:
                 self._begin_anew()
                 yield RestartHere()
+                for order in opening_orders(self._journal, anew=True):
+                    yield order
             now_ns = self._clock.now_ns()
             last = min(self._due(), self._next + _CHUNK)
             for sample in self._timeline.cut(self._next, last, now_ns) if last > self._next else ():
+                for order in self._orders.get(self._next, ()):
+                    yield order
                 self._next += 1
                 yield sample
+                if self._at_end():
+                    for order in self._orders.get(self._next, ()):
+                        yield order
                 if self._clock.now_ns() - breath_ns > _BURST_NS:
                     await asyncio.sleep(0)
                     breath_ns = self._clock.now_ns()
@@ -229,6 +255,29 @@ class Replay:
     def _seconds_to_next(self) -> float:
         ahead_ns = self._timeline.elapsed_ns(self._next) - self._playhead_ns()
         return max(ahead_ns / self.speed, _BURST_NS) * 1e-9
+
+
+def orders_by_place(journal: Journal | None) -> dict[int, list[Order]]:
+    """A recording's orders by the number of samples before them."""
+    orders: dict[int, list[Order]] = {}
+    for place, order in journal.orders if journal else ():
+        orders.setdefault(place, []).append(order)
+    return orders
+
+
+def opening_orders(journal: Journal | None, anew: bool) -> list[Order]:
+    """What brings a session to where a recording began: ``anew``, whatever was done to it meanwhile."""
+    if journal is None:
+        return []
+    commands: list[Command] = []
+    if anew:
+        commands += [SetApplyAtOnce(False), DropCandidate()]
+        commands += [ReplaceCandidate(journal.settings, "as recorded"), ApplyCandidate()]
+    if journal.candidate != journal.settings:
+        commands.append(ReplaceCandidate(journal.candidate, "as recorded"))
+    if journal.apply_at_once:
+        commands.append(SetApplyAtOnce(True))
+    return [Order(command, "recording", 0) for command in commands]
 
 
 def source_info(recording: Recording, truth: Truth | None = None) -> SourceInfo:

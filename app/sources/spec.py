@@ -13,7 +13,7 @@ from app.motion import InputError
 KINDS = ("replay", "sim", "serial", "ws", "udp")
 SLOWEST, FASTEST = 0.1, 8.0
 
-_PACE = ("speed", "loop")
+_PACE = ("speed", "loop", "changes")
 _LATER = ("serial", "ws", "udp")
 _TRUE = {
     "1": True,
@@ -39,6 +39,7 @@ class Spec:
     options: Mapping[str, str] = field(default_factory=dict)
     speed: float = 1.0
     loop: bool = False
+    changes: bool = True  # repeat the changes that a recording of ours holds
 
 
 def parse_spec(text: str) -> Spec:
@@ -62,7 +63,8 @@ def parse_spec(text: str) -> Spec:
         unquote(target) if kind == "sim" else target,
         options,
         speed=parse_speed(pace.get("speed", "1")),
-        loop=_loop(pace.get("loop", "0")),
+        loop=_switch("loop", pace.get("loop", "0")),
+        changes=_switch("changes", pace.get("changes", "1")),
     )
 
 
@@ -103,7 +105,7 @@ def _check_keys(text: str, options: Mapping[str, str]) -> None:
             )
 
 
-def _loop(text: str) -> bool:
+def _switch(key: str, text: str) -> bool:
     if text.lower() not in _TRUE:
-        raise InputError(f"loop={text!r}: expected 1 or 0")
+        raise InputError(f"{key}={text!r}: expected 1 or 0")
     return _TRUE[text.lower()]

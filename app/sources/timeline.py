@@ -10,10 +10,20 @@ from app.motion import Recording, Sample, Samples
 
 
 class Timeline:
-    """All sensors of a recording merged by their stamps; the order among equal stamps is the recording's."""
+    """All sensors of a recording merged by their stamps; the order among equal stamps is the recording's.
+
+    A recording of ours says itself in which order its samples came.
+    """
 
     def __init__(self, recording: Recording) -> None:
         self._sensors = recording.sensors
+        if recording.journal is not None:
+            self._elapsed_ns = recording.journal.elapsed_ns
+            self._which = recording.journal.arrivals
+            self._row = np.empty(len(self._which), np.int64)
+            for index, samples in enumerate(recording.sensors):
+                self._row[self._which == index] = np.arange(len(samples))
+            return
         stamps = [samples.device_ns + samples.matrix[:, 0].astype(np.int64) for samples in recording.sensors]
         merged = np.concatenate(stamps)
         order = np.argsort(merged, kind="stable")

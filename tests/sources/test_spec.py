@@ -37,7 +37,7 @@ def test_forms(text: str, spec: Spec) -> None:
         ("", "no path"),
         ("replay:", "no path"),
         ("sim:", "no simulator"),
-        ("w.csv?colour=red", "unknown option 'colour', expected one of speed, loop, rate"),
+        ("w.csv?colour=red", "unknown option 'colour', expected one of speed, loop, changes, rate"),
         ("w.csv?loop", "option 'loop', expected key=value"),
         ("w.csv?=1", "expected key=value"),
         ("w.csv?speed=2&speed=3", "'speed' is given twice"),

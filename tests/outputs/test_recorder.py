@@ -1,0 +1,200 @@
+"""The recorder on a real disk: what was synced is there, whatever happens next."""
+
+from __future__ import annotations
+
+import errno
+import os
+import signal
+import subprocess
+import sys
+import textwrap
+import time
+from pathlib import Path
+
+import pytest
+
+from app import motion as m
+from app.formats import kept
+from app.formats.journal import Start
+from app.outputs import recorder as recorder_module
+from app.outputs.recorder import Recorder
+from app.settings import Settings
+from tests.formats.walks import random_samples
+
+ROLES = {"left": m.Role.LEFT, "right": m.Role.RIGHT}
+
+
+def a_recorder(folder: Path, **rest) -> Recorder:
+    made = Recorder(folder, "papers", "replay:walks/demo.csv?speed=2", ROLES, {"version": "test"}, **rest)
+    made.start(Start(Settings(), Settings(), False))
+    return made
+
+
+def found_in(path: Path) -> kept.Kept:
+    return kept.kept(path.name, path.read_bytes())
+
+
+def wait_for(condition, seconds: float = 20.0) -> None:
+    until = time.monotonic() + seconds
+    while not condition() and time.monotonic() < until:
+        time.sleep(0.01)
+    assert condition()
+
+
+def test_what_was_handed_over_is_in_the_file(tmp_path: Path) -> None:
+    samples = random_samples(300)
+    recorder = a_recorder(tmp_path / "new")
+    for sample in samples:
+        recorder.sample(sample)
+    recorder.marker("Ann", "stairs")
+    recorder.close(20.0)
+    found = found_in(recorder.path)
+    assert kept.samples(found) == samples
+    assert found.closed
+    assert [text for _, text in found.markers] == ["stairs"]
+    assert recorder.path.name.endswith("_papers_demo.mcap")
+    assert not recorder.state.on
+    assert recorder.state.size_bytes == recorder.path.stat().st_size
+
+
+def test_two_recordings_of_one_second_are_two_files(tmp_path: Path) -> None:
+    first, second = a_recorder(tmp_path), a_recorder(tmp_path)
+    first.close(20.0)
+    second.close(20.0)
+    assert first.path != second.path
+
+
+@pytest.mark.parametrize("profile", ["../../etc/passwd", "a/b", "\0", "Ann's <b>"])
+def test_a_name_cannot_leave_the_folder(tmp_path: Path, profile: str) -> None:
+    recorder = Recorder(tmp_path, profile, "x", ROLES, {})
+    recorder.close(20.0)
+    assert recorder.path.parent == tmp_path
+    assert recorder.path.is_file()
+
+
+def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(m.InputError, match="--record") as error:
+        a_recorder(tmp_path / "file")
+    assert "\n" not in str(error.value)
+
+
+def test_a_slow_disk_is_told_and_loses_nothing(tmp_path: Path) -> None:
+    def slow(number: int) -> None:
+        time.sleep(1.2)
+        os.fsync(number)
+
+    samples = random_samples(400)
+    recorder = a_recorder(tmp_path, sync=slow)
+    for sample in samples:
+        recorder.sample(sample)
+    wait_for(lambda: "slow" in recorder.state.trouble)
+    recorder.close(30.0)
+    assert kept.samples(found_in(recorder.path)) == samples
+
+
+def test_a_queue_that_is_full_is_told_and_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(recorder_module, "MOST_WAITING", 50)
+    monkeypatch.setattr(recorder_module, "CHUNK_S", 60.0)
+    samples = random_samples(80)
+    recorder = a_recorder(tmp_path)
+    for sample in samples:
+        recorder.sample(sample)
+    assert recorder.state.trouble
+    recorder.close(20.0)
+    found = found_in(recorder.path)
+    kept_samples = kept.samples(found)
+    assert kept_samples == samples[: len(kept_samples)]
+    assert [e["samples"] for e in found.events if e["event"] == "lost"] == [80 - len(kept_samples)]
+
+
+def test_a_full_disk_closes_the_recording_readable(tmp_path: Path) -> None:
+    full = [False]
+
+    def sync(number: int) -> None:
+        if full[0]:
+            full[0] = False  # the room that was kept is given back
+            raise OSError(errno.ENOSPC, "No space left on device")
+        os.fsync(number)
+
+    samples = random_samples(200)
+    recorder = a_recorder(tmp_path, sync=sync)
+    for i, sample in enumerate(samples):
+        recorder.sample(sample)
+        if i == 100:
+            full[0] = True
+    wait_for(lambda: not recorder.state.on)
+    found = found_in(recorder.path)
+    assert "No space left" in recorder.state.trouble
+    assert found.closed
+    assert kept.samples(found) == samples[: len(kept.samples(found))]
+    recorder.sample(samples[0])  # nobody is held up by a recording that has ended
+    recorder.close(20.0)
+
+
+def test_a_file_that_may_not_grow_keeps_its_whole_chunks(tmp_path: Path) -> None:
+    """A real refusal by the system, in a process of its own: not even the end can be written."""
+    code = f"""
+        import resource, signal, sys, time
+        sys.path.insert(0, {str(Path.cwd())!r})
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        from pathlib import Path
+        from tests.outputs.test_recorder import a_recorder, random_samples
+        from app.outputs import recorder as r
+        r.RESERVE = 1000
+        recorder = a_recorder(Path({str(tmp_path)!r}))
+        resource.setrlimit(resource.RLIMIT_FSIZE, (60_000, 60_000))
+        for sample in random_samples(2000):
+            recorder.sample(sample)
+            time.sleep(0.001)
+        recorder.close(20.0)
+        print(recorder.state.trouble)
+    """
+    done = subprocess.run(
+        [sys.executable, "-c", textwrap.dedent(code)], capture_output=True, text=True, timeout=60, check=False
+    )
+    assert "File too large" in done.stdout, done.stderr
+    (path,) = tmp_path.glob("*.mcap")
+    found = kept.samples(found_in(path))
+    assert found == random_samples(2000)[: len(found)]
+    assert found
+
+
+SENDER = """
+    import sys, time
+    sys.path.insert(0, sys.argv[1])
+    from pathlib import Path
+    from tests.outputs.test_recorder import a_recorder, random_samples
+    samples = random_samples(20000)
+    recorder = a_recorder(Path(sys.argv[2]))
+    print(recorder.path, flush=True)
+    began = time.monotonic()
+    for i, sample in enumerate(samples):
+        recorder.sample(sample)
+        if i % 40 == 39:
+            print(i + 1, flush=True)
+            time.sleep(max(0.0, began + i / 800 - time.monotonic()))
+"""
+
+
+def killed_recording(folder: Path, after_s: float) -> tuple[Path, int]:
+    """Kill -9 a process that records two feet at 400 Hz: the file, and how many samples it handed over."""
+    sender = subprocess.Popen(
+        [sys.executable, "-c", textwrap.dedent(SENDER), str(Path.cwd()), str(folder)], stdout=subprocess.PIPE
+    )
+    assert sender.stdout is not None
+    path = Path(sender.stdout.readline().decode().strip())
+    sender.stdout.readline()
+    time.sleep(after_s)
+    sender.send_signal(signal.SIGKILL)
+    said = sender.stdout.read().split()
+    sender.wait(20)
+    return path, int(said[-1]) if said else 40
+
+
+@pytest.mark.parametrize("after_s", [0.05, 0.9, 1.63])
+def test_a_killed_recording_is_an_exact_prefix(tmp_path: Path, after_s: float) -> None:
+    path, sent = killed_recording(tmp_path, after_s)
+    found = kept.samples(found_in(path)) if path.stat().st_size > 100 else []
+    assert found == random_samples(20000)[: len(found)]
+    assert sent - len(found) <= 3 * 800  # how much is lost in a second is `make soak`'s to measure

@@ -1,0 +1,142 @@
+"""A recorded walk, replayed with its changes, is the same walk to the bit."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from app import motion as m
+from app.formats.journal import Start
+from app.formats.keeping import Keeper
+from app.session import Session
+from app.settings import Settings
+from app.simulate.walk import make_walk
+from app.sources.opening import open_source
+from app.sources.timeline import Timeline
+
+WALK = {"path": "square", "feet": "2", "noise": "0.3", "seed": "5", "still_s": "1.5", "size_m": "4"}
+BEGAN = Settings().with_changes({"gain_swing": 0.07})
+
+
+def order(command: m.Command, number: int) -> m.Order:
+    return m.Order(command, "Ann", 3_000_000_000 * number)
+
+
+def orders() -> dict[int, m.Command]:
+    """Every kind of order that moves the walk, between samples."""
+    return {
+        300: m.SetCandidate((("gain_stance", 0.7),)),
+        400: m.ApplyCandidate(),
+        500: m.SetApplyAtOnce(True),
+        600: m.SetCandidate((("gain_swing", 0.2),)),
+        700: m.KeepAs("A"),
+        720: m.SetCandidate((("gain_swing", 2e9),)),  # refused, and refused again
+        800: m.ReplaceCandidate(Settings(), "profile papers"),
+        900: m.Undo(),
+        1000: m.SwapAB(),
+        1100: m.ResetHeading(),
+        1200: m.SetApplyAtOnce(False),
+        1300: m.SetCandidate((("gain_swing", 0.3),)),
+    }
+
+
+class Work:
+    """Runs a session's re-estimations late: only after ``delay`` more samples and orders."""
+
+    def __init__(self, session: Session, delay: int) -> None:
+        self.session, self.delay, self.waited = session, delay, 0
+
+    def do(self, now: bool = False) -> None:
+        while self.session.wanted is not None:
+            self.waited += 1
+            if not now and self.waited < self.delay:
+                return
+            self.waited = 0
+            job = self.session.wanted
+            self.session.adopt(job, job.run())
+
+
+def apply(session: Session, given: m.Order) -> None:
+    with contextlib.suppress(m.InputError):
+        session.apply(given)
+
+
+@pytest.fixture(scope="module")
+def live(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Session]:
+    """A walk driven by hand, recorded as it happens."""
+    recording = make_walk(WALK).recording
+    session = Session(BEGAN)
+    keeper = Keeper({"source": "test"}, {}, 10**18)
+    path = tmp_path_factory.mktemp("recordings") / "walk.mcap"
+    work, given = Work(session, delay=40), orders()
+    data = keeper.begin(0)
+    keeper.start(0, Start(BEGAN, BEGAN, False))
+    timeline = Timeline(recording)
+    for i, sample in enumerate(timeline.cut(0, len(timeline), 0)):
+        if i in given:
+            asked = order(given[i], i)
+            apply(session, asked)
+            keeper.order(session.number, asked)
+        session.take(sample)
+        keeper.sample(sample)
+        work.do()
+        if i % 160 == 0:
+            data += keeper.chunk()
+    work.do(now=True)
+    path.write_bytes(data + keeper.end())
+    return path, session
+
+
+async def replayed(spec: str, settings: Settings, delay: int, seek_back: bool = False) -> Session:
+    source = open_source(spec, finish=True)
+    session = Session(source.settings or settings)
+    work, taken = Work(session, delay), 0
+    async for item in source:
+        if isinstance(item, m.Sample):
+            session.take(item)
+            taken += 1
+            if seek_back and taken == 1250:
+                source.control(m.Seek(0.5))
+        else:
+            apply(session, item if isinstance(item, m.Order) else m.Order(item, "replay", 0))
+        work.do()
+    work.do(now=True)
+    return session
+
+
+def rows(track) -> dict[str, np.ndarray]:
+    trackers = {sensor: foot.tracker for sensor, foot in track.feet.items()}
+    return {sensor: t.rows.table(t.rows.start, t.rows.end) for sensor, t in trackers.items()}
+
+
+def assert_same(one, other) -> None:
+    assert one.settings == other.settings
+    for sensor, table in rows(one).items():
+        np.testing.assert_array_equal(table, rows(other)[sensor])
+
+
+@pytest.mark.parametrize(("delay", "seek_back"), [(1, False), (105, False), (150, False), (7, True)])
+def test_a_replay_with_its_changes_repeats_the_walk_to_the_bit(live, delay: int, seek_back: bool) -> None:
+    path, session = live
+    again = asyncio.run(replayed(f"replay:{path}?speed=0", Settings(), delay, seek_back))
+    assert_same(session.main, again.main)
+    assert session.candidate is not None
+    assert again.candidate is not None
+    assert_same(session.candidate, again.candidate)
+    if delay == 1:  # (the page's list leaves out an apply that the next one overtook)
+        assert [c[2:] for c in again.changes] == [c[2:] for c in session.changes]
+
+
+def test_a_replay_without_its_changes_has_the_settings_told(live) -> None:
+    path, session = live
+    told = Settings().with_changes({"gain_stance": 0.9})
+    again = asyncio.run(replayed(f"replay:{path}?speed=0&changes=0", told, 1))
+    assert again.main.settings == told
+    assert again.log == []
+    assert {s: len(t) for s, t in rows(again.main).items()} == {
+        s: len(t) for s, t in rows(session.main).items()
+    }
