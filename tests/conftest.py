@@ -28,6 +28,9 @@ CHROMIUM_ARGUMENTS = [
     "--disable-sync",
 ]
 
+#: A test machine draws in software, perhaps beside other work: a hang is what takes longer than this.
+BROWSER_TIMEOUT_S = 400
+
 # The same examples on every run, so that a red test is a change's fault and not luck's;
 # HYPOTHESIS_PROFILE=search looks for new ones.
 hypothesis.settings.register_profile("same", deadline=None, derandomize=True, max_examples=60)
@@ -78,6 +81,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     for item in items:
         if "browser" in getattr(item, "fixturenames", ()):
             item.add_marker(pytest.mark.browser)
+            item.add_marker(pytest.mark.timeout(BROWSER_TIMEOUT_S))
 
 
 @pytest.fixture(autouse=True)

@@ -131,7 +131,7 @@ def test_a_slider_makes_a_ghost_that_both_browsers_see(
             seen.wait_for_function(
                 f"() => ({NODES})().some(name => name.includes('ghost'))", timeout=PATIENCE_MS
             )
-        second.get_by_role("button", name="Apply", exact=True).click()
+        second.get_by_role("button", name="Apply", exact=True).click(timeout=PATIENCE_MS)
         for seen in (page, second):
             seen.wait_for_function(
                 "() => document.body.innerText.includes('No candidate')", timeout=PATIENCE_MS

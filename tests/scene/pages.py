@@ -16,7 +16,7 @@ DRAWN = """(node) => {
   return drawn && s && node in s.getState() && drawn.triangles > 0 && drawn.frame > 2;
 }"""
 NO_TOASTS = ".mantine-Notifications-root{display:none!important}"
-PATIENCE_MS = 90_000
+PATIENCE_MS = 180_000
 
 
 @contextmanager
