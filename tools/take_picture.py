@@ -18,7 +18,6 @@ from playwright.sync_api import Error, Page, sync_playwright
 
 ROOT = Path(__file__).resolve().parents[1]
 PATH = ROOT / "docs" / "page.png"
-SIZE = {"width": 1440, "height": 900}
 ARGUMENTS = [
     "--no-sandbox",
     "--enable-unsafe-swiftshader",
@@ -47,7 +46,7 @@ def main(path: Path) -> None:
     try:
         with sync_playwright() as playwright:
             browser = playwright.chromium.launch(executable_path=browser_path, args=ARGUMENTS)
-            page = browser.new_page(viewport=SIZE)
+            page = browser.new_page(viewport={"width": 1440, "height": 900})
             wait_for(page, f"http://127.0.0.1:{port}/?fixedDpr=1")
             page.wait_for_function(DRAWN, timeout=PATIENCE_MS)
             page.add_style_tag(content=".mantine-Notifications-root{display:none!important}")
