@@ -209,6 +209,7 @@ class Viewer:
             raise m.InputError("the search for gains is still running")
         if not self._session.main.feet:
             raise m.InputError("no samples yet: gains can be searched once there is a walk")
+        gains.demand_gains(self._session.main.settings)
         self._status = replace(self._status, sweep_progress=0.0, sweep=None)
         self._sweeping = asyncio.create_task(self._sweep(order), name="sweep")
 

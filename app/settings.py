@@ -57,8 +57,13 @@ class Settings:
 
     estimator: str = _setting(
         "papers",
-        Limit("Estimator", "", "", "Which method turns samples into a walk.", choices=("papers",)),
-    )
+        Limit(
+            "Estimator", "", "",
+            "Which method turns samples into a walk: the papers' algorithm, or the Kalman filter, which is"
+            " more exact at any gait.",
+            choices=("papers", "kalman"),
+        ),
+    )  # fmt: skip
     gain_stance: float = _setting(
         1.05,
         Limit(
@@ -141,6 +146,51 @@ class Settings:
             "Turns the whole walk about the vertical: the heading at the start, or with the"
             " magnetometer, that of magnetic north.",
             -math.pi, math.pi, (-math.pi, math.pi), math.radians(1),
+        ),
+    )  # fmt: skip
+
+    detector: str = _setting(
+        "adaptive",
+        Limit(
+            "Stance detector", "", "",
+            "How the Kalman filter knows that the foot stands: by a threshold that follows the gait, or by"
+            " a fixed one on the statistic (shoe), its rate (ared), or the papers' machine (rate).",
+            choices=("adaptive", "shoe", "ared", "rate"),
+        ),
+    )  # fmt: skip
+    gait_factor: float = _setting(
+        30.0,
+        Limit(
+            "Stance share", "", "s²/rad²",
+            "Detector adaptive: how loud a stance may be beside the gait around it; too low misses stances"
+            " of a runner, too high takes slow swings for stances.",
+            1.0, 1000.0, (10.0, 100.0), 1.0,
+        ),
+    )  # fmt: skip
+    still_statistic: float = _setting(
+        100.0,
+        Limit(
+            "Stance threshold", "T", "σ²",
+            "Detector shoe: the statistic that a standing foot stays below; 100 suits walking, runners need"
+            " ten times that.",
+            1.0, 1e5, (10.0, 2000.0), 10.0,
+        ),
+    )  # fmt: skip
+    sensor_height_m: float = _setting(
+        0.07,
+        Limit(
+            "Sensor height", "h", "m",
+            "How high the sensor sits above the sole: a standing foot rolls, which moves it by h times the"
+            " turn; 0 shortens the walk by about 2 %.",
+            0.0, 0.3, (0.0, 0.15), 0.005,
+        ),
+    )  # fmt: skip
+    gyro_range_radps: float = _setting(
+        0.0,
+        Limit(
+            "Gyro range", "", "rad/s",
+            "The angular rate at which the gyro clips; 0: 8.7 rad/s (500 °/s) until faster rates were read.",
+            0.0, 100.0, (0.0, 40.0), 0.1,
         ),
     )  # fmt: skip
 

@@ -8,6 +8,7 @@ import numpy as np
 
 from app.blocks import Blocks
 from app.estimator.corrections import EVENT_WIDTH, correct
+from app.estimator.methods import METHODS
 from app.estimator.strides import contact_at, lift_above_line
 from app.estimator.sweep import sweep
 from app.estimator.tracker import Tracker
@@ -42,6 +43,11 @@ def parts() -> Iterator[tuple[str, Callable[[], None]]]:
         contact_at(rows[0], 0.0)
         lift_above_line(rows, event)
 
+    def kalman() -> None:
+        tracker = Tracker(Settings(estimator="kalman"))
+        tracker.advance(samples)
+        METHODS["kalman"].correct(rows, 0, samples.table(0, 1), event, tracker.state)
+
     def trails() -> None:
         TrailBuilder("warm").add(rows)
         coarser(np.zeros((2, 2, 3), np.float32), 1.0)
@@ -50,7 +56,8 @@ def parts() -> Iterator[tuple[str, Callable[[], None]]]:
         sweep(samples, Settings(), np.ones(1), np.ones(1))
 
     yield "orientations", orientations
-    yield "the estimator", lambda: Tracker(Settings()).advance(samples)
+    yield "the papers' estimator", lambda: Tracker(Settings()).advance(samples)
+    yield "the Kalman filter", kalman
     yield "corrections", corrections
     yield "trails", trails
     yield "the search for gains", search

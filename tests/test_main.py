@@ -102,7 +102,7 @@ def test_a_missing_file_a_folder_and_a_later_source(run: Run, tmp_path: Path) ->
         ("gain_stance", "KEY=VALUE"),
         ("gain=1", "gain"),
         ("magnetometer=maybe", "on or off"),
-        ("estimator=kalman", "papers"),
+        ("estimator=other", "papers"),
         ("gain_stance=1e999", "number"),
         ("=", "unknown"),
         ("two\nlines=1", "unknown"),

@@ -12,7 +12,7 @@ from app.motion import Floats
 
 
 class Event(IntEnum):
-    """Columns of an event, float64 [16]: what happened, and which rows change by it."""
+    """Columns of an event, float64 [22]: what happened, and which rows change by it."""
 
     HAPPENED = 0
     LIFT_ROW = 1  # rows after it change
@@ -24,9 +24,12 @@ class Event(IntEnum):
     START = 9  # 9…11: position at the lift
     END = 12  # 12…14: position at the contact
     APPLIED = 15  # 1: the rows are corrected already
+    # the Kalman filter's: what its updates since the contact changed, of position (at ``EPSILON``) and …
+    SLOWED = 16  # 16…18: of velocity, m/s
+    TURNED = 19  # 19…21: of attitude, a turn in n, rad
 
 
-EVENT_WIDTH = 16
+EVENT_WIDTH = 22
 _HAPPENED, _LIFT_ROW, _CONTACT_ROW, _ROW = 0, 1, 2, 3
 _LIFT_NS, _EPSILON, _END = int(Event.LIFT_NS), int(Event.EPSILON), int(Event.END)
 

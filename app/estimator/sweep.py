@@ -20,7 +20,7 @@ from app.estimator.papers import Reading, aid, leave_segment, level, navigate, o
 from app.estimator.resume import resume
 from app.estimator.state import NAV, Record
 from app.estimator.tracker import Checkpoint
-from app.motion import Floats, Sweep
+from app.motion import Floats, InputError, Sweep
 from app.settings import Settings
 
 #: The grid "Find gains" looks at: k_s and k_d in 1/s.
@@ -65,6 +65,14 @@ def sweep_run(
         now.row += 1.0
 
 
+def demand_gains(settings: Settings) -> None:
+    """``InputError`` under an estimator that has no gains k_s and k_d."""
+    if settings.estimator != "papers":
+        raise InputError(
+            f"find gains: the estimator {settings.estimator} has none, expected papers: change it"
+        )
+
+
 def sweep(
     samples: Blocks,
     settings: Settings,
@@ -76,8 +84,10 @@ def sweep(
     """Horizontal distance from start to end, m [a, b], for every k_s [a] and k_d [b].
 
     Where the oldest samples are gone, ``base`` is a tracker's checkpoint at the oldest still here.
+    Under another estimator than the papers', which has no such gains, it is ``InputError``.
     ``progress`` is told how much is done, 0…1, and returns False to give up (then ``InterruptedError``).
     """
+    demand_gains(settings)
     state = s.new_state(settings) if base is None else base.state.copy()
     resume(state, settings)
     navs = np.zeros(len(gains_stance) * len(gains_swing), NAV)

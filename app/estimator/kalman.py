@@ -1,0 +1,252 @@
+"""Heart: an error-state Kalman filter with zero-velocity updates, one sample at a time. Read ``step``.
+
+After E. Foxlin, "Pedestrian Tracking with Shoe-Mounted Inertial Sensors", IEEE CG&A 25(6), 2005, and
+J.-O. Nilsson, I. Skog, P. Händel, K. Hari, "Foot-mounted INS for everybody", IEEE/ION PLANS 2012.
+Other than there: the update is soft (its noise follows the detector's statistic), its place in time is
+the middle of the detector's window, and the velocity of a standing foot is that of one that rolls.
+"""
+
+from __future__ import annotations
+
+from app.compiled import kernel
+from app.estimator import state as s
+from app.estimator.attitude import fqa_tilt, fqa_yaw
+from app.estimator.clipping import mind_clipping
+from app.estimator.covariance import add_variance, measure, propagate
+from app.estimator.detectors import forget_gait, remember, remember_gait, stands, window_statistic
+from app.estimator.footfalls import end_footfalls, footfall, note_contact
+from app.estimator.gait import STANCE
+from app.estimator.kalman_state import (
+    ATTITUDE_AT,
+    FORCE_AT,
+    GYRO_AT,
+    RING,
+    RING_GAIN,
+    RING_NS,
+    RING_P,
+    RING_Q,
+    RING_ROLL,
+    VELOCITY_AT,
+    KalmanState,
+)
+from app.estimator.papers import Reading
+from app.estimator.standing import begin_bias, begin_window, find_level, keep_standing, learn_bias
+from app.motion import Vector
+from app.rotation import exponential, from_yaw, multiply, normalise, rotate, yaw_of
+
+#: Noise of the specific force and of the rate, as they are integrated: (m/s)/√s and rad/√s.
+FORCE_NOISE, RATE_NOISE = 0.05, 0.002
+#: How the biases wander: (m/s²)/√s and (rad/s)/√s.
+FORCE_WANDER, RATE_WANDER = 1e-4, 1e-6
+#: σ at the start: tilt and heading, rad, and the accelerometer's bias, m/s².
+TILT_DOUBT, YAW_DOUBT, FORCE_DOUBT = 0.02, 1e-4, 0.05
+#: σ² of a zero velocity is the first squared plus the second squared times the statistic, m/s.
+STANCE_NOISE, STATISTIC_NOISE = 0.01, 0.008
+#: A zero velocity holds in the middle of the window it was seen in, this long ago.
+SEEN_LATE_NS = 20_100_000
+#: After a gap the foot may be anywhere it could walk to, m/s.
+GAP_SPEED = 1.0
+
+
+@kernel
+def step(state: KalmanState, reading: Reading) -> int:
+    """One sample on. Returns what happened, a sum of the codes in ``state.py``. Time must go forward."""
+    force_before, rate_before = (state.f0, state.f1, state.f2), (state.w0, state.w1, state.w2)
+    happened, dt_s = receive(state, reading)
+    place = remember(state)
+    state.statistic, rate2 = window_statistic(state)
+    energy, least = remember_gait(state)
+    if state.levelled == 0.0:
+        happened |= find_level(state, reading.field_b)
+        level(state)
+        if happened & s.LEVEL_FOUND:
+            begin_walk(state)
+    if not happened & s.RESTING:
+        predict(state, force_before, rate_before, dt_s)
+        mind_clipping(state, rate_before, dt_s)
+        note_motion(state, place)
+        stood = stands(state, energy, least, rate2, dt_s)
+        if stood:
+            note_contact(state)
+            zero_velocity(state)
+        happened |= footfall(state, stood)
+        if state.standing != 0.0:
+            keep_standing(state, energy, reading.field_b)
+    note_corrections(state, place)
+    state.row += 1.0
+    return happened
+
+
+@kernel
+def receive(state: KalmanState, reading: Reading) -> tuple[int, float]:
+    """The sample into the state; a gap in time ends the segment. Returns that, and seconds since the last."""
+    happened = 0
+    dt_s = (reading.elapsed_ns - state.elapsed_ns) * 1e-9
+    if state.started == 0.0:
+        state.started, dt_s = 1.0, 0.0
+        state.elapsed_ns = reading.elapsed_ns
+        begin_bias(state)
+        add_variance(state.P, FORCE_AT, FORCE_DOUBT**2)
+        state.P[8, 8] = YAW_DOUBT**2
+        begin_segment(state)
+    elif dt_s > s.GAP_S:
+        happened = s.SEGMENT | end_footfalls(state)
+        add_variance(state.P, 0, (GAP_SPEED * dt_s) ** 2)
+        state.heading = yaw_of((state.q0, state.q1, state.q2, state.q3))
+        state.elapsed_ns, dt_s = reading.elapsed_ns, 0.0
+        begin_segment(state)
+    state.elapsed_ns = reading.elapsed_ns
+    state.f0, state.f1, state.f2 = reading.force_b
+    state.w0, state.w1, state.w2 = reading.rate_b
+    return happened, dt_s
+
+
+@kernel
+def begin_segment(state: KalmanState) -> None:
+    """Level is unknown from here on and nothing is integrated; the foot stays where it was."""
+    state.levelled, state.standing, state.phase = 0.0, 0.0, STANCE
+    state.vx, state.vy, state.vz = 0.0, 0.0, 0.0
+    state.contrary_s = 0.0
+    forget_gait(state)
+    begin_window(state)
+    for axis in range(3):
+        state.clip[axis, 0] = 0.0
+
+
+@kernel
+def level(state: KalmanState) -> None:
+    """Tilt by FQA on the means of the still window so far, (3.17)–(3.22), and the heading there was."""
+    if state.window_n == 0.0:
+        return
+    tilt = fqa_tilt((state.window_f0, state.window_f1, state.window_f2))
+    yaw = from_yaw(state.heading)
+    if state.magnetometer != 0.0:
+        north = fqa_yaw(tilt, (state.window_m0, state.window_m1, state.window_m2), state.north_rad)
+        if north[0] != 0.0 or north[3] != 0.0:
+            yaw = north
+    state.q0, state.q1, state.q2, state.q3 = multiply(yaw, tilt)
+
+
+@kernel
+def begin_walk(state: KalmanState) -> None:
+    """Level is found: gravity, a first bias, and doubts by how still the window was."""
+    restless = state.window_statistic / state.window_n
+    state.gravity = state.gravity_mps2
+    if state.gravity == 0.0:
+        state.gravity = state.window_norm / state.window_n
+    for i in range(15):
+        for j in range(15):
+            if i != j:
+                state.P[i, j] = 0.0
+    for k in range(3):
+        state.P[VELOCITY_AT + k, VELOCITY_AT + k] = STANCE_NOISE**2 + STATISTIC_NOISE**2 * restless
+    for k in range(2):  # what disturbed the window leans on its mean force
+        state.P[6 + k, 6 + k] = TILT_DOUBT**2 + 0.01 * restless / state.gravity**2
+    learn_bias(state)
+    state.levelled, state.standing = 1.0, 1.0
+    state.quiet_ns = state.elapsed_ns
+
+
+@kernel
+def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, dt_s: float) -> None:
+    """Strapdown: the mean of both samples, turned at the half step; then P."""
+    half = 0.5 * dt_s
+    turn = (
+        (0.5 * (rate_before_b[0] + state.w0) - state.gyro_bias[0]) * half,
+        (0.5 * (rate_before_b[1] + state.w1) - state.gyro_bias[1]) * half,
+        (0.5 * (rate_before_b[2] + state.w2) - state.gyro_bias[2]) * half,
+    )
+    force_b = (
+        0.5 * (force_before_b[0] + state.f0) - state.force_bias[0],
+        0.5 * (force_before_b[1] + state.f1) - state.force_bias[1],
+        0.5 * (force_before_b[2] + state.f2) - state.force_bias[2],
+    )
+    half_turn = exponential(turn)
+    q_half = multiply((state.q0, state.q1, state.q2, state.q3), half_turn)
+    state.q0, state.q1, state.q2, state.q3 = normalise(multiply(q_half, half_turn))
+    force_n = rotate(q_half, force_b)
+    gained = (force_n[0] * dt_s, force_n[1] * dt_s, (force_n[2] + state.gravity) * dt_s)
+    state.px += (state.vx + 0.5 * gained[0]) * dt_s
+    state.py += (state.vy + 0.5 * gained[1]) * dt_s
+    state.pz += (state.vz + 0.5 * gained[2]) * dt_s
+    state.vx, state.vy, state.vz = state.vx + gained[0], state.vy + gained[1], state.vz + gained[2]
+    state.gained_x, state.gained_y = state.gained_x + gained[0], state.gained_y + gained[1]
+    state.gained_z += gained[2]
+    propagate(state.P, q_half, force_n, dt_s)
+    add_variance(state.P, VELOCITY_AT, FORCE_NOISE**2 * dt_s)
+    add_variance(state.P, ATTITUDE_AT, RATE_NOISE**2 * dt_s)
+    add_variance(state.P, GYRO_AT, RATE_WANDER**2 * dt_s)
+    add_variance(state.P, FORCE_AT, FORCE_WANDER**2 * dt_s)
+
+
+@kernel
+def note_motion(state: KalmanState, place: int) -> None:
+    """What a zero velocity seen a little later will be held against: the velocity gained since, and the
+    velocity a foot has that stands but rolls over its sole: ω × the sensor's height."""
+    q = (state.q0, state.q1, state.q2, state.q3)
+    rate = (state.w0 - state.gyro_bias[0], state.w1 - state.gyro_bias[1], state.w2 - state.gyro_bias[2])
+    rate_n = rotate(q, rate)
+    state.ring[place, RING_ROLL] = -state.sensor_height_m * rate_n[1]
+    state.ring[place, RING_ROLL + 1] = state.sensor_height_m * rate_n[0]
+    state.ring[place, RING_GAIN] = state.gained_x
+    state.ring[place, RING_GAIN + 1] = state.gained_y
+    state.ring[place, RING_GAIN + 2] = state.gained_z
+
+
+@kernel
+def seen_at(state: KalmanState) -> int:
+    """The place in the ring of the oldest sample of this segment within ``SEEN_LATE_NS``."""
+    newest = int(state.ring_at)
+    place = newest
+    for back in range(1, int(state.ring_n)):
+        i = (newest - back) % RING
+        if state.elapsed_ns - state.ring[i, RING_NS] > SEEN_LATE_NS:
+            break
+        place = i
+    return place
+
+
+@kernel
+def zero_velocity(state: KalmanState) -> None:
+    """The foot stood in the middle of the window: three scalar measurements of its velocity then."""
+    i = seen_at(state)
+    variance = STANCE_NOISE**2 + STATISTIC_NOISE**2 * state.statistic
+    for k in range(15):
+        state.shift[k] = 0.0
+    velocity = (state.vx - state.gained_x, state.vy - state.gained_y, state.vz - state.gained_z)
+    for k in range(3):
+        roll = state.ring[i, RING_ROLL + k] if k < 2 else 0.0
+        away = roll - velocity[k] - state.ring[i, RING_GAIN + k]
+        measure(state.P, state.shift, state.gain, VELOCITY_AT + k, away, variance)
+    take_shift(state)
+
+
+@kernel
+def take_shift(state: KalmanState) -> None:
+    """What an update found goes into the estimate, and into the sums for the rows behind."""
+    d = state.shift
+    state.px, state.py, state.pz = state.px + d[0], state.py + d[1], state.pz + d[2]
+    state.vx, state.vy, state.vz = state.vx + d[3], state.vy + d[4], state.vz + d[5]
+    turn = exponential((d[6], d[7], d[8]))
+    q = (state.q0, state.q1, state.q2, state.q3)
+    state.q0, state.q1, state.q2, state.q3 = normalise(multiply(turn, q))
+    for k in range(3):
+        state.gyro_bias[k] += d[GYRO_AT + k]
+        state.force_bias[k] += d[FORCE_AT + k]
+    state.corrected_x, state.corrected_y = state.corrected_x + d[0], state.corrected_y + d[1]
+    state.corrected_z += d[2]
+    state.slowed_x, state.slowed_y = state.slowed_x + d[3], state.slowed_y + d[4]
+    state.slowed_z += d[5]
+    state.turned_x, state.turned_y = state.turned_x + d[6], state.turned_y + d[7]
+    state.turned_z += d[8]
+
+
+@kernel
+def note_corrections(state: KalmanState, place: int) -> None:
+    """Corrections up to this row, so that those still to come can be given to it."""
+    state.ring[place, RING_P] = state.corrected_x
+    state.ring[place, RING_P + 1] = state.corrected_y
+    state.ring[place, RING_P + 2] = state.corrected_z
+    state.ring[place, RING_Q] = state.turned_x
+    state.ring[place, RING_Q + 1] = state.turned_y
+    state.ring[place, RING_Q + 2] = state.turned_z

@@ -1,0 +1,238 @@
+"""Heart: the flat state of the Kalman filter's step: one record, so that a copy is a checkpoint.
+
+As in ``state.py`` the classes only name the fields; here some are small arrays. The error state has
+15 parts in the order of ``P``: position, velocity, attitude (a turn in *n*), gyro bias, accelerometer bias.
+"""
+
+from __future__ import annotations
+
+import math
+from enum import IntEnum
+
+import numpy as np
+
+from app.estimator.state import Record, dtype_of
+from app.motion import Floats
+from app.settings import Settings
+
+#: Samples that the trailing windows may hold: 50 ms at 2560 Hz.
+RING = 128
+#: Columns of ``ring``: when; specific force; |ω|²; velocity gained so far; velocity of a rolling foot;
+#: corrections so far of position and attitude.
+RING_NS, RING_F, RING_W2, RING_GAIN, RING_ROLL, RING_P, RING_Q = 0, 1, 4, 5, 8, 10, 13
+RING_WIDTH = 16
+#: The gait's recent past is kept in bins of 50 ms: |ω|² summed, samples, least statistic.
+BINS = 32
+BIN_NS = 50_000_000
+#: Parts of the error state.
+PARTS = 15
+VELOCITY_AT, ATTITUDE_AT, GYRO_AT, FORCE_AT = 3, 6, 9, 12
+
+
+class Detector(IntEnum):
+    """Which zero-velocity detector, as a number the compiled step reads."""
+
+    ADAPTIVE = 0
+    SHOE = 1
+    ARED = 2
+    RATE = 3
+
+
+class Parameters:
+    """The settings as the compiled step reads them (units as in ``Settings``)."""
+
+    detector: float
+    gait_factor: float
+    still_statistic: float
+    threshold_radps: float
+    min_duration_s: float
+    sensor_height_m: float
+    gyro_range_radps: float  # 0: found
+    gravity_mps2: float  # 0: as read at rest
+    bias_from_rest: float  # 0 or 1
+    still_window_s: float
+    north_rad: float
+    magnetometer: float
+
+
+class Window:
+    """A still window under way: its sums, and those of its fifths, whose scatter shows swaying."""
+
+    window_ns: float  # its first sample
+    window_n: float
+    window_f0: float
+    window_f1: float
+    window_f2: float
+    window_norm: float
+    window_statistic: float
+    window_m0: float
+    window_m1: float
+    window_m2: float
+    fifth_ns: float
+    fifth_n: float
+    fifths: float
+
+
+class KalmanState(Parameters, Window):
+    """All of it, but for the arrays, which ``KALMAN`` adds."""
+
+    row: float  # number of the next row
+    elapsed_ns: float  # of the last sample
+    started: float  # 0 before the first sample
+    levelled: float  # 0 while level is still being sought
+    standing: float  # 1 until the first walking: still windows sharpen the gyro bias
+    heading: float  # yaw to start the next segment with, rad
+    gravity: float
+    phase: float
+    contrary_s: float  # of the detector RATE
+    statistic: float  # T
+    threshold: float  # what T had to stay below
+    q0: float
+    q1: float
+    q2: float
+    q3: float
+    px: float
+    py: float
+    pz: float
+    vx: float
+    vy: float
+    vz: float
+    w0: float  # last sample
+    w1: float
+    w2: float
+    f0: float
+    f1: float
+    f2: float
+    ring_at: float  # place of the newest sample in the ring
+    ring_n: float
+    bin_at: float
+    bin_ns: float  # where the newest bin begins
+    quiet_ns: float  # the last zero velocity
+    top_radps: float  # the largest rate read
+    gained_x: float  # velocity gained from the specific force since the segment began
+    gained_y: float
+    gained_z: float
+    corrected_x: float  # position corrections so far
+    corrected_y: float
+    corrected_z: float
+    turned_x: float  # attitude corrections so far
+    turned_y: float
+    turned_z: float
+    moving: float  # 1 from a lift to the stride's correction
+    lift_row: float
+    lift_ns: float
+    from_x: float  # position at the lift
+    from_y: float
+    from_z: float
+    contact_row: float  # −1: none yet
+    contact_ns: float
+    at_x: float  # position at the contact, less the corrections so far
+    at_y: float
+    at_z: float
+    before_x: float  # corrections of position before the contact's first
+    before_y: float
+    before_z: float
+    unturned_x: float  # corrections of attitude before the contact's first
+    unturned_y: float
+    unturned_z: float
+    slowed_x: float  # velocity corrections since the contact
+    slowed_y: float
+    slowed_z: float
+    done_lift_row: float  # the swing that was finished last
+    done_lift_ns: float
+    done_contact_row: float
+    done_swing_s: float
+    start_x: float
+    start_y: float
+    start_z: float
+    P: Floats  # [15, 15]
+    gyro_bias: Floats  # [3], rad/s
+    force_bias: Floats  # [3], m/s²
+    bias_info: Floats  # [3]: 1 / σ² of what still windows say of the gyro bias …
+    bias_sum: Floats  # [3]: … and that times the bias
+    ring: Floats  # [RING, RING_WIDTH]
+    bins: Floats  # [BINS, 3]
+    fifth: Floats  # [3]: sums of the rate in the fifth under way
+    fifth_sum: Floats  # [3]: of the fifths' means, and of their squares
+    fifth_squares: Floats
+    clip: Floats  # [3, 3]: for each gyro axis: clipped samples in a row, slope on the way in, their seconds
+    gain: Floats  # [15]: working space of an update
+    shift: Floats  # [15]: what an update found
+
+
+SHAPES: dict[str, tuple[int, ...]] = {
+    "P": (PARTS, PARTS),
+    "gyro_bias": (3,),
+    "force_bias": (3,),
+    "bias_info": (3,),
+    "bias_sum": (3,),
+    "ring": (RING, RING_WIDTH),
+    "bins": (BINS, 3),
+    "fifth": (3,),
+    "fifth_sum": (3,),
+    "fifth_squares": (3,),
+    "clip": (3, 3),
+    "gain": (PARTS,),
+    "shift": (PARTS,),
+}
+KALMAN = np.dtype([(name, np.float64, SHAPES.get(name, ())) for name in dtype_of(KalmanState).names or ()])
+
+
+_VECTORS = (
+    "p", "v", "gained_", "corrected_", "turned_", "from_", "at_", "before_", "unturned_", "slowed_", "start_"
+)  # fmt: skip
+
+
+def new_state(settings: Settings) -> Record:
+    """The state before the first sample: a record array of one."""
+    state = np.zeros(1, KALMAN)
+    state["q0"] = 1.0
+    state["contact_row"] = -1.0
+    state["heading"] = settings.start_heading_rad
+    set_parameters(state, settings)
+    return state
+
+
+def set_parameters(state: Record, settings: Settings) -> None:
+    """Write the settings into a state."""
+    state["detector"] = Detector[settings.detector.upper()]
+    state["magnetometer"] = settings.magnetometer
+    for name in ("gait_factor", "still_statistic", "threshold_radps", "min_duration_s", "sensor_height_m"):
+        state[name] = getattr(settings, name)
+    state["gyro_range_radps"] = settings.gyro_range_radps
+    state["gravity_mps2"] = 0.0 if settings.gravity_from_rest else settings.gravity_mps2
+    state["bias_from_rest"] = settings.bias_from_rest
+    state["still_window_s"] = settings.still_window_s
+    state["north_rad"] = settings.start_heading_rad
+
+
+def resume(state: Record, settings: Settings) -> None:
+    """Give a state other settings; the start heading turns the walk so far about the start."""
+    angle_rad = settings.start_heading_rad - float(state["north_rad"][0])
+    set_parameters(state, settings)
+    if angle_rad:
+        turn_about_down(state[0], angle_rad)
+
+
+def turn_about_down(state: np.void, angle_rad: float) -> None:
+    """Turn all that lies in *n* clockwise, seen from above, about the start."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    for name in _VECTORS:
+        x, y = float(state[f"{name}x"]), float(state[f"{name}y"])
+        state[f"{name}x"], state[f"{name}y"] = c * x - s * y, s * x + c * y
+    turn = np.eye(PARTS)
+    for first in (0, VELOCITY_AT, ATTITUDE_AT):
+        turn[first : first + 2, first : first + 2] = [[c, -s], [s, c]]
+    state["P"] = turn @ state["P"] @ turn.T
+    for first in (RING_GAIN, RING_ROLL, RING_P, RING_Q):
+        xy = state["ring"][:, first : first + 2]
+        state["ring"][:, first : first + 2] = xy @ np.array([[c, s], [-s, c]])
+    c, s = math.cos(0.5 * angle_rad), math.sin(0.5 * angle_rad)
+    w, x, y, z = (float(state[f"q{i}"]) for i in range(4))
+    state["q0"], state["q1"], state["q2"], state["q3"] = (
+        c * w - s * z,
+        c * x - s * y,
+        c * y + s * x,
+        c * z + s * w,
+    )
+    state["heading"] += angle_rad

@@ -1,0 +1,80 @@
+"""Heart: the estimators side by side: what a tracker asks of the one its settings name."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from typing import NamedTuple
+
+from app.estimator import corrections, kalman_run, kalman_state, papers_run, resume, state
+from app.estimator.gait import SWING
+from app.estimator.state import Record
+from app.motion import Floats
+from app.rotation import yaw_of
+from app.settings import Settings
+
+
+class Method(NamedTuple):
+    """One estimator. States differ, rows and events are the same."""
+
+    new_state: Callable[[Settings], Record]
+    resume: Callable[[Record, Settings], None]  # from a checkpoint, under other settings
+    run: Callable[[Record, Floats, Floats, int, int, Floats], tuple[int, int]]
+    correct: Callable[[Floats, int, Floats, Floats, Record], None]
+    moves: Callable[[Record], bool]  # whether rows since the lift may still change
+    events: int  # that a run may report before it pauses for them to be applied
+
+
+def _papers_correct(rows: Floats, first_row: int, samples: Floats, event: Floats, _: Record) -> None:
+    corrections.correct(rows, first_row, samples, event)
+
+
+def _papers_moves(record: Record) -> bool:
+    return bool(record["phase"][0] == SWING or record["contrary_s"][0] > 0.0)
+
+
+def _kalman_moves(record: Record) -> bool:
+    return bool(record["moving"][0])
+
+
+METHODS: dict[str, Method] = {
+    "papers": Method(
+        state.new_state, resume.resume, papers_run.run, _papers_correct, _papers_moves, events=64
+    ),
+    # its corrections read the state as the event left it: one event a run
+    "kalman": Method(  # its corrections read the state as the event left it: one event a run
+        kalman_state.new_state,
+        kalman_state.resume,
+        kalman_run.run,
+        kalman_run.correct,
+        _kalman_moves,
+        events=1,
+    ),
+}
+
+
+def go_on(method: Method, record: Record, settings: Settings) -> Record:
+    """A state of ``method`` to go on with from ``record``, a checkpoint of the same or another one.
+
+    Another method's walk is taken up as after a gap: from where the foot was, level sought anew.
+    """
+    own = method.new_state(settings)
+    if record.dtype == own.dtype:
+        own = record.copy()
+        method.resume(own, settings)
+        return own
+    turn_rad = settings.start_heading_rad - float(record["north_rad"][0])
+    c, s = math.cos(turn_rad), math.sin(turn_rad)
+    x, y, z = _position(record)
+    own["px"], own["py"], own["pz"] = c * x - s * y, s * x + c * y, z
+    own["row"], own["elapsed_ns"], own["lift_row"] = record["row"], record["elapsed_ns"], record["row"] - 1.0
+    q0, q1, q2, q3 = (float(record[f"q{i}"][0]) for i in range(4))
+    own["heading"] = turn_rad + yaw_of((q0, q1, q2, q3))
+    return own
+
+
+def _position(record: Record) -> tuple[float, float, float]:
+    """Where the foot is: the papers' state has the travel of the swing under way apart."""
+    travel = "s" if "sx" in (record.dtype.names or ()) else None
+    x, y, z = (float(record[f"p{a}"][0]) + (float(record[f"s{a}"][0]) if travel else 0.0) for a in "xyz")
+    return x, y, z
