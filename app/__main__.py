@@ -15,6 +15,7 @@ from app import __version__, profiles
 from app.motion import InputError
 from app.settings import Settings, parse
 
+DEFAULT_PROFILE = "papers"
 DEMO = Path(__file__).parent.parent / "recordings" / "demo.csv"
 
 
@@ -47,18 +48,43 @@ def parser() -> Parser:
     walk.add_argument(
         "--memory-mb", type=int, default=512, help="budget for samples; beyond it the oldest go"
     )
+    walk.add_argument(
+        "--record", metavar="DIR", type=Path, help="record from the beginning, into this folder"
+    )
     walk.add_argument("--no-open", action="store_true", help="do not open a browser")
+
+    keep = commands.add_parser("record", help="a source onto the disk, without a browser")
+    keep.add_argument("--source", metavar="SPEC", required=True)
+    keep.add_argument("--record", metavar="DIR", type=Path, required=True)
+    keep.add_argument("--seconds", metavar="N", type=float, help="end after this many seconds")
+
+    mend = commands.add_parser(
+        "recover", help="what is whole in a damaged recording, as a new file beside it"
+    )
+    mend.add_argument("file", metavar="FILE")
+
+    tell = commands.add_parser("info", help="what is in a recording")
+    tell.add_argument("file", metavar="FILE")
+    tell.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
 
     process = commands.add_parser("process", help="a recording without a browser")
     process.add_argument("recording", metavar="RECORDING")
     _add_settings(process)
     process.add_argument("--out", metavar="DIR", type=Path, help="write trajectory and strides there")
     process.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+    _add_gestures(commands)
     return top
 
 
+def _add_gestures(commands: argparse._SubParsersAction[Parser]) -> None:
+    gestures = commands.add_parser("gestures", help="what the feet ask for in a recording, without a browser")
+    gestures.add_argument("recording", metavar="RECORDING", help="of two feet; or sim:gestures?…")
+    gestures.add_argument("--decoder", choices=("default", "papers"), default="default")
+    gestures.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
+
+
 def _add_settings(command: argparse.ArgumentParser) -> None:
-    command.add_argument("--profile", metavar="NAME|FILE", default="papers")
+    command.add_argument("--profile", metavar="NAME|FILE")
     command.add_argument("--set", metavar="KEY=VALUE", action="append", default=[], help="change one setting")
 
 
@@ -74,7 +100,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         argv.insert(0, "walk")
     options = parser().parse_args(argv)
     try:
-        code = run_walk(options) if options.command == "walk" else run_process(options)
+        code = RUN[options.command](options)
         sys.stdout.flush()
         return code
     except InputError as error:
@@ -102,6 +128,9 @@ def run_walk(options: argparse.Namespace) -> int:
             token=token_of(options),
             open_browser=not options.no_open,
             budget_bytes=options.memory_mb * 2**20,
+            told=options.profile is not None or bool(options.set),
+            profile=Path(options.profile or DEFAULT_PROFILE).stem,
+            record=options.record,
         ),
         lambda line: print(line, flush=True),
     )
@@ -124,9 +153,64 @@ def run_process(options: argparse.Namespace) -> int:
     return 0
 
 
+def run_record(options: argparse.Namespace) -> int:
+    """A source onto the disk, until it ends."""
+    from app import record
+
+    if options.seconds is not None and not 0.0 < options.seconds < 1e9:
+        raise InputError(f"--seconds {options.seconds:g}: expected more than 0")
+    state = record.record(
+        options.source, options.record, options.seconds, lambda line: print(line, flush=True)
+    )
+    print(f"{state.name}: {state.seconds:.1f} s, {state.size_bytes / 1e6:.2f} MB")
+    if state.trouble:
+        raise InputError(f"{state.name}: {state.trouble}")
+    return 0
+
+
+def run_recover(options: argparse.Namespace) -> int:
+    """A damaged recording's whole part."""
+    from app import library
+
+    path, made = library.recover(options.file)
+    print(f"wrote {path}: {made.samples} samples, {made.messages} messages in {made.chunks} whole chunks")
+    return 0
+
+
+def run_info(options: argparse.Namespace) -> int:
+    """What is in a recording."""
+    from app import library
+
+    told = library.info(options.file)
+    for line in [json.dumps(told)] if options.json else library.lines(told):
+        print(line)
+    return 0
+
+
+def run_gestures(options: argparse.Namespace) -> int:
+    """What the feet ask for in a recording."""
+    from app import batch
+
+    done = batch.decode_gestures(options.recording, options.decoder)
+    if options.json:
+        print(json.dumps(batch.gestures_summary(done)))
+        return 0
+    for line in batch.gestures_lines(done):
+        print(line)
+    return 0
+
+
+RUN = {
+    "walk": run_walk,
+    "process": run_process,
+    "record": run_record,
+    "recover": run_recover,
+    "info": run_info, "gestures": run_gestures}
+
+
 def settings_of(options: argparse.Namespace) -> Settings:
     """The profile, with each ``--set`` on top."""
-    settings = profiles.load(options.profile)
+    settings = profiles.load(options.profile or DEFAULT_PROFILE)
     changes = {}
     for text in options.set:
         key, equals, value = text.partition("=")

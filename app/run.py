@@ -19,6 +19,7 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
 from functools import partial
+from pathlib import Path
 
 import numpy as np
 
@@ -26,6 +27,8 @@ from app import motion as m
 from app import profiles
 from app.door.front import Door
 from app.estimator import sweep as gains
+from app.formats.journal import Start
+from app.outputs.recorder import Recorder
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
@@ -40,6 +43,8 @@ FRAME_S = 1 / 60
 EARLY_S = 0.006
 #: Between looks at the folder of profiles.
 PROFILES_S = 2.0
+#: Where a foot is drawn is recorded this often.
+POSES_S = 0.04
 #: A message stays this long.
 MESSAGE_S = 8.0
 
@@ -55,11 +60,15 @@ class Options:
     token: str | None
     open_browser: bool
     budget_bytes: int = DEFAULT_BUDGET
+    told: bool = False  # the settings were given: a recording's own changes are not repeated
+    profile: str = "papers"
+    record: Path | None = None  # record from the beginning
+    recordings: Path = Path("recordings")  # for the button
 
 
 def walk(options: Options, tell: Callable[[str], None]) -> None:
     """Serve the walk until Ctrl-C. ``tell`` prints a line. Bad input is ``InputError``."""
-    source = open_source(options.source)
+    source = open_source(options.source, changes=not options.told)
     asyncio.run(Viewer(options, source).serve(tell))
 
 
@@ -69,7 +78,11 @@ class Viewer:
     def __init__(self, options: Options, source: Replay) -> None:
         self._options = options
         self._source = source
-        self._session = Session(options.settings, self._role, source.info.truth, options.budget_bytes)
+        settings = source.settings or options.settings
+        self._session = Session(settings, self._role, source.info.truth, options.budget_bytes)
+        self._recorder: Recorder | None = None
+        self._posed_s = 0.0
+        self._strides: dict[str, tuple[int, int]] = {}  # epoch and number of the last stride recorded
         self._orders: asyncio.Queue[m.Order] = asyncio.Queue()
         self._work = asyncio.Event()  # the session wants something re-estimated
         self._stop = asyncio.Event()
@@ -93,6 +106,9 @@ class Viewer:
 
         with contextlib.ExitStack() as closing:
             closing.callback(self._workers.shutdown, wait=False, cancel_futures=True)
+            closing.callback(self._record, False)
+            if self._options.record is not None:
+                self._record(True)
             scene = Scene(submit)
             closing.callback(scene.close)
             door = Door(
@@ -135,8 +151,14 @@ class Viewer:
         async for item in self._source:
             if isinstance(item, m.RestartHere):
                 self._take_order(m.Order(item, "replay", time.monotonic_ns()))
+                if self._recorder is not None:
+                    self._recorder.start(self._start())
+            elif isinstance(item, m.Order):
+                self._take_order(item)
             else:
                 self._session.take(item)
+                if self._recorder is not None:
+                    self._recorder.sample(item)
                 self._fresh.set()
                 self._last_sample_s = time.monotonic()
 
@@ -175,19 +197,68 @@ class Viewer:
                     self._find_gains(order)
                 case m.LoadProfile(name):
                     wanted = m.ReplaceCandidate(profiles.load_named(name), f"profile {name}")
-                    self._session.apply(replace_command(order, wanted))
+                    self._apply(replace_command(order, wanted))
                 case m.SaveProfile(name):
                     profiles.save(name, self._session.main.settings)
                     self._status = replace(self._status, profiles=profiles.names())
                     self._say(f"profile {name} saved")
                 case m.Pause() | m.Step() | m.Speed() | m.Seek() | m.Loop() as command:
                     self._source.control(command)
+                case m.Record(on):
+                    self._record(on)
+                case m.Mark(text):
+                    self._mark(order.who, text)
                 case _:
-                    self._session.apply(order)
+                    self._apply(order)
         except m.InputError as error:
             self._say(str(error))
         if self._session.wanted is not None:
             self._work.set()
+
+    def _apply(self, order: m.Order) -> None:
+        """Apply it, and record it: one that is refused is refused again in a replay."""
+        try:
+            self._session.apply(order)
+        finally:
+            if self._recorder is not None:
+                self._recorder.order(self._session.number, order)
+
+    # --- the recording -----------------------------------------------------------------------------
+
+    def _record(self, on: bool) -> None:
+        if self._recorder is not None and (not on or not self._recorder.on):
+            self._recorder.close()
+            self._status = replace(self._status, recording=self._recorder.state)
+            self._recorder = None
+        if on and self._recorder is None:
+            folder = self._options.record or self._options.recordings
+            made_by = self._source.recording.spec
+            options = self._options
+            self._recorder = Recorder(folder, options.profile, options.source, self._source.info, made_by)
+            self._recorder.start(self._start())
+
+    def _start(self) -> Start:
+        """What the session holds now, for a walk that is recorded from here."""
+        now = self._session.snapshot()
+        return Start(now.main.settings, now.candidate_settings, now.apply_at_once)
+
+    def _mark(self, who: str, text: str) -> None:
+        if self._recorder is None:
+            raise m.InputError("no recording to mark: start one first")
+        self._recorder.marker(who, text)
+
+    def _record_walk(self, feet: tuple[m.FootView, ...]) -> None:
+        """Where the feet are drawn, and the strides that ended since the last look."""
+        if self._recorder is None or time.monotonic() < self._posed_s + POSES_S:
+            return
+        self._posed_s = time.monotonic()
+        epoch = self._session.epoch
+        for foot in feet:
+            self._recorder.pose(foot.sensor, foot.position_n, foot.q_nb)
+            for stride in self._session.main.feet[foot.sensor].tracker.strides[-4:]:
+                if (epoch, stride.number) > self._strides.get(foot.sensor, (0, -1)):
+                    self._strides[foot.sensor] = (epoch, stride.number)
+                    self._recorder.stride(foot.sensor, stride)
 
     # --- long work ---------------------------------------------------------------------------------
 
@@ -265,7 +336,9 @@ class Viewer:
                 async with asyncio.timeout(2 * EARLY_S):
                     await self._fresh.wait()
             try:
-                scene.draw(self._session.snapshot(), self._status_now())
+                snapshot = self._session.snapshot()
+                self._record_walk(snapshot.main.feet)
+                scene.draw(snapshot, self._status_now())
             except Exception:
                 log.exception("drawing failed")
                 await asyncio.sleep(1.0)
@@ -285,6 +358,7 @@ class Viewer:
             speed=self._source.speed,
             loop=self._source.loop,
             position_s=self._source.position_s,
+            recording=self._recorder.state if self._recorder else self._status.recording,
         )
 
     def _link(self) -> m.Link:

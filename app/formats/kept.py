@@ -89,10 +89,10 @@ def kept(name: str, data: bytes) -> Kept:
     for place, message in enumerate(placed):
         by_channel[message.channel].append(_Placed(place, message))
     topics = {channel.topic: by_channel[number] for number, channel in contents.channels.items()}
-    if keeping.RECORDING not in topics:
+    if not any(channel.schema.startswith("stridescope.") for channel in contents.channels.values()):
         whose = "another program's" if contents.channels else "no whole chunk in it"
         raise InputError(f"{name}: an MCAP file, but {whose}, expected a recording of Stridescope")
-    about = [journal.from_json(item.message.data) for item in topics[keeping.RECORDING]]
+    about = [journal.from_json(item.message.data) for item in topics.get(keeping.RECORDING, ())]
     starts = ((p, journal.read_start(m.data)) for p, m in topics.get(keeping.START, ()))
     orders = ((p, journal.read_order(m.data)) for p, m in topics.get(keeping.ORDERS, ()))
     texts = ((p, journal.from_json(m.data).get("text")) for p, m in topics.get(keeping.MARKERS, ()))

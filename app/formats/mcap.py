@@ -19,7 +19,7 @@ LIBRARY = "stridescope"
 
 _HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(1, 9)
 _STATISTICS, _SUMMARY_OFFSET, _DATA_END = 0x0B, 0x0E, 0x0F
-_COMPRESSION = b"\x04\x00\x00\x00zstd"
+_COMPRESSION = b"\x04\x00\x00\x00zstd"  # as it stands in every chunk
 _RECORD = struct.Struct("<BQ")
 _CHUNK_HEAD = struct.Struct("<BQQQQI8sQ")  # opcode, length, start, end, size, crc, "zstd", packed size
 _MARK_AT = 37  # of the compression's name in a chunk
@@ -76,7 +76,7 @@ class Writer:
     ``chunk`` closes what came since the last one; every ``repeat``-th defines all channels again.
     """
 
-    repeat: int = 32
+    repeat: int = 8
     channels: list[Channel] = field(default_factory=list)
     size: int = 0  # bytes given out so far
     counts: dict[int, int] = field(default_factory=dict)

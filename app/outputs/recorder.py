@@ -14,13 +14,14 @@ import tempfile
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+from app import __version__
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
-from app.motion import InputError, Order, Quaternion, RecorderState, Role, Sample, Stride, Vector
+from app.motion import InputError, Order, Quaternion, RecorderState, Sample, SourceInfo, Stride, Vector
 
 log = logging.getLogger(__name__)
 
@@ -43,11 +44,14 @@ class Recorder:
         folder: Path,
         profile: str,
         source: str,
-        roles: Mapping[str, Role],
-        about: Mapping[str, object],
+        info: SourceInfo,
+        made_by: str | None = None,
         sync: Callable[[int], None] = os.fsync,
     ) -> None:
-        """Make the file; ``InputError`` if that cannot be done. ``sync`` takes a file's number."""
+        """Make the file; ``InputError`` if that cannot be done.
+
+        ``source`` is the SPEC, ``made_by`` the simulator's behind a file. ``sync`` takes a file's number.
+        """
         self._sync = sync
         self._queue: deque[_Waiting] = deque()
         self._pending = b""  # the chunk being written
@@ -56,8 +60,8 @@ class Recorder:
         self._free = 0
         self._began_s = time.monotonic()
         self._over = threading.Event()
-        named = {**about, "profile": profile, "source": source}
-        self._keeper = Keeper(named, roles, time.time_ns() - time.monotonic_ns())
+        about = _about(info) | {"profile": profile, "source": source, "spec": made_by or ""}
+        self._keeper = Keeper(about, info.sensors, time.time_ns() - time.monotonic_ns())
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._reserve = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115  (held open)
@@ -104,12 +108,21 @@ class Recorder:
     # --- out ---------------------------------------------------------------------------------------
 
     @property
+    def on(self) -> bool:
+        """Whether it still records: a full disk ends it."""
+        return not self._over.is_set()
+
+    @property
+    def waiting(self) -> int:
+        """How many things the disk has not had yet."""
+        return len(self._queue)
+
+    @property
     def state(self) -> RecorderState:
         """What the page shows."""
         trouble = self._trouble or (f"{self._lost} samples not recorded" if self._lost else "")
-        on = self._thread.is_alive() and not self._over.is_set()
         return RecorderState(
-            self.path.name, on, time.monotonic() - self._began_s, self._size, self._free, trouble
+            self.path.name, self.on, time.monotonic() - self._began_s, self._size, self._free, trouble
         )
 
     def close(self, wait_s: float = 1.5) -> None:
@@ -186,6 +199,17 @@ class Recorder:
                 self._size = self._write(self._keeper.end(), self._size)
         except OSError as second:
             log.error("%s: closed without its summary: %s", self.path, second)
+
+
+def _about(info: SourceInfo) -> dict[str, object]:
+    return {
+        "version": __version__,
+        "name": info.name,
+        "format": info.format,
+        "rate_hz": info.rate_hz,
+        "assumed": list(info.assumed),
+        "sensors": {sensor: role.value for sensor, role in info.sensors.items()},
+    }
 
 
 def _new_file(folder: Path, name: str) -> tuple[Path, Any]:

@@ -30,6 +30,11 @@ def printable(name: str) -> str:
     return "".join(character if character.isprintable() else "?" for character in name)
 
 
+def read_bytes(file: Path) -> bytes:
+    """The bytes of a file; ``InputError``, one line, if there are none to have."""
+    return _bytes(file, printable(str(file)))
+
+
 def _bytes(file: Path, shown: str) -> bytes:
     try:
         if file.is_dir():

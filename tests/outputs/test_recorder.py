@@ -21,11 +21,11 @@ from app.outputs.recorder import Recorder
 from app.settings import Settings
 from tests.formats.walks import random_samples
 
-ROLES = {"left": m.Role.LEFT, "right": m.Role.RIGHT}
+INFO = m.SourceInfo("demo.csv", "plain CSV", {"left": m.Role.LEFT, "right": m.Role.RIGHT}, 400.0)
 
 
 def a_recorder(folder: Path, **rest) -> Recorder:
-    made = Recorder(folder, "papers", "replay:walks/demo.csv?speed=2", ROLES, {"version": "test"}, **rest)
+    made = Recorder(folder, "papers", "replay:walks/demo.csv?speed=2", INFO, **rest)
     made.start(Start(Settings(), Settings(), False))
     return made
 
@@ -66,7 +66,7 @@ def test_two_recordings_of_one_second_are_two_files(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("profile", ["../../etc/passwd", "a/b", "\0", "Ann's <b>"])
 def test_a_name_cannot_leave_the_folder(tmp_path: Path, profile: str) -> None:
-    recorder = Recorder(tmp_path, profile, "x", ROLES, {})
+    recorder = Recorder(tmp_path, profile, "x", INFO)
     recorder.close(20.0)
     assert recorder.path.parent == tmp_path
     assert recorder.path.is_file()

@@ -1,0 +1,104 @@
+"""Shell: recordings as files: what is in one, what is left of a damaged one, and as other formats."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+from app.formats import mcap
+from app.formats.kept import Kept, kept, lost_seqs
+from app.formats.recover import Recovered
+from app.formats.recover import recover as recovered
+from app.motion import Recording
+from app.outputs.files import beside, write_new
+from app.sources.files import read_bytes
+from app.sources.opening import open_recording
+from app.sources.spec import parse_spec
+
+
+def recover(text: str) -> tuple[Path, Recovered]:
+    """Every whole chunk of a damaged recording in a new file beside it; the damaged one stays."""
+    path = Path(text).expanduser()
+    made = recovered(path.name, read_bytes(path))
+    into = beside(path, "recovered")
+    write_new(into, made.data)
+    return into, made
+
+
+def info(spec_text: str) -> dict[str, Any]:
+    """What ``info --json`` prints: duration, rates, losses, and for a recording of ours all it knows."""
+    spec = parse_spec(spec_text)
+    recording, _ = open_recording(spec)
+    told: dict[str, Any] = {
+        "recording": recording.name,
+        "format": recording.format,
+        "assumed": list(recording.assumed),
+        "duration_s": recording.duration_s,
+        "dropped_rows": recording.dropped_rows,
+        "sensors": {samples.sensor: _sensor(samples) for samples in recording.sensors},
+    }
+    data = read_bytes(Path(spec.target).expanduser()) if recording.journal else b""
+    if mcap.recognises(data):
+        told |= _ours(recording, kept(recording.name, data))
+        told["size_bytes"] = len(data)
+    return told
+
+
+def _sensor(samples: Any) -> dict[str, Any]:
+    return {
+        "role": samples.role.value,
+        "samples": len(samples),
+        "rate_hz": samples.rate_hz,
+        "dropped": dict(samples.dropped),
+        "saturated": int((samples.saturation != 0).sum()),
+    }
+
+
+def _ours(recording: Recording, found: Kept) -> dict[str, Any]:
+    journal = recording.journal
+    assert journal is not None
+    clock_ns = found.about.get("clock_ns")
+    firsts = [int(readings.host_ns[0]) for readings in found.readings]
+    began = (min(firsts) + clock_ns) * 1e-9 if firsts and isinstance(clock_ns, int) else None
+    return {
+        "closed": found.closed,
+        "began": None if began is None else time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(began)),
+        "about": found.about,
+        "lost": {readings.sensor: lost_seqs(readings) for readings in found.readings},
+        "messages": found.messages,
+        "settings": asdict(journal.settings),
+        "changes": [
+            {"after_samples": place, "who": order.who, "what": type(order.command).__name__}
+            | asdict(order.command)
+            for place, order in journal.orders
+        ],
+        "markers": [{"t_s": t_s, "text": text} for t_s, text in journal.markers],
+        "events": list(found.events),
+    }
+
+
+def lines(told: dict[str, Any]) -> list[str]:
+    """The same for a person."""
+    text = [f"{told['recording']} ({told['format']}): {told['duration_s']:.1f} s"]
+    for sensor, figures in told["sensors"].items():
+        lost = told.get("lost", {}).get(sensor, 0)
+        dropped = sum(figures["dropped"].values())
+        text.append(
+            f"  {sensor}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
+            f" {dropped} dropped, {figures['saturated']} saturated"
+        )
+    text += [f"  {sentence}" for sentence in told["assumed"]]
+    if "began" in told:
+        text.append(f"  began {told['began'] or 'at an unknown time'}, {told['size_bytes'] / 1e6:.2f} MB")
+        text.append(f"  settings: {', '.join(f'{key}={value}' for key, value in told['settings'].items())}")
+    text += [
+        f"  after {change['after_samples']} samples {change['who']}: {change['what']}"
+        for change in told.get("changes", ())
+    ]
+    text += [f"  marker at {mark['t_s']:.1f} s: {mark['text']}" for mark in told.get("markers", ())]
+    return [
+        " ".join(line.split()) if not line.startswith("  ") else "  " + " ".join(line.split())
+        for line in text
+    ]

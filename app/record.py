@@ -1,0 +1,56 @@
+"""Shell: a source onto the disk without a browser."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import signal
+from collections.abc import Callable
+from pathlib import Path
+
+from app.formats.journal import Start
+from app.motion import InputError, Order, RecorderState, RestartHere
+from app.outputs.recorder import Recorder
+from app.settings import Settings
+from app.sources.opening import open_source
+from app.sources.replay import Replay
+
+#: A recording without a browser may take longer to end: nobody waits for the page.
+CLOSE_S = 30.0
+
+
+def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str], None]) -> RecorderState:
+    """Record until the source ends, ``seconds`` are over or Ctrl-C; what was recorded."""
+    source = open_source(spec, finish=True, changes=False)
+    recorder = Recorder(folder, "papers", spec, source.info, source.recording.spec)
+    tell(f"Recording to {recorder.path}  (Ctrl-C ends it)")
+    recorder.start(Start(Settings(), Settings(), False))
+    try:
+        asyncio.run(_fill(source, recorder, seconds))
+    finally:
+        recorder.close(CLOSE_S)
+    return recorder.state
+
+
+async def _fill(source: Replay, recorder: Recorder, seconds: float | None) -> None:
+    task = asyncio.create_task(_take(source, recorder))
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, task.cancel)
+    with contextlib.suppress(asyncio.CancelledError, TimeoutError):
+        await asyncio.wait_for(task, seconds)
+
+
+async def _take(source: Replay, recorder: Recorder) -> None:
+    taken = 0
+    async for item in source:
+        taken += 1
+        if isinstance(item, RestartHere):
+            recorder.order(taken, Order(item, "replay", 0))
+            recorder.start(Start(Settings(), Settings(), False))
+        elif not isinstance(item, Order):
+            recorder.sample(item)
+            while recorder.waiting > 10_000:  # as fast as possible is as fast as the disk
+                await asyncio.sleep(0.01)
+        if not recorder.on:
+            raise InputError(f"{recorder.path}: {recorder.state.trouble}")

@@ -1,0 +1,58 @@
+"""Recordings as files: info, recover."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from app.__main__ import main
+from tests.formats.walks import random_samples, write
+
+
+@pytest.fixture
+def damaged(tmp_path: Path) -> Path:
+    path = tmp_path / "walk.mcap"
+    path.write_bytes(write(random_samples(100))[:-3000])
+    return path
+
+
+def test_recover_writes_beside_and_keeps_the_damaged_one(damaged: Path, capsys) -> None:
+    before = damaged.read_bytes()
+    assert main(["recover", str(damaged)]) == 0
+    assert main(["recover", str(damaged)]) == 0
+    assert damaged.read_bytes() == before
+    names = sorted(path.name for path in damaged.parent.iterdir())
+    assert names == ["walk.mcap", "walk_recovered.mcap", "walk_recovered_2.mcap"]
+    assert "samples" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", ["recover", "info"])
+def test_what_is_no_recording_is_one_line(command: str, tmp_path: Path, capsys) -> None:
+    for name, data in (("empty", b""), ("text.mcap", b"Dear Sir"), ("none", None)):
+        if data is not None:
+            (tmp_path / name).write_bytes(data)
+        assert main([command, str(tmp_path / name)]) == 2
+        error = capsys.readouterr().err
+        assert name in error
+        assert error.count("\n") == 1
+
+
+def test_info_tells_all_of_a_recording(tmp_path: Path, capsys) -> None:
+    path = tmp_path / "walk.mcap"
+    path.write_bytes(write(random_samples(100)))
+    assert main(["info", str(path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["sensors"]["left"]["samples"] == 50
+    assert told["sensors"]["left"]["rate_hz"] == pytest.approx(100.0)
+    assert told["lost"] == {"left": 0, "right": 0}
+    assert told["closed"] is True
+    assert main(["info", str(path)]) == 0
+    assert "50 samples at 100.0 Hz" in capsys.readouterr().out
+
+
+def test_info_tells_of_any_recording(capsys) -> None:
+    demo = Path(__file__).parent.parent / "recordings" / "demo.csv"
+    assert main(["info", str(demo)]) == 0
+    assert "plain CSV" in capsys.readouterr().out
