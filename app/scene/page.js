@@ -12,6 +12,10 @@
     const key = event.key.toLowerCase();
     if (key === "f") fullScreen().catch(() => {});
     const viewer = window.__viserMutable;
+    if (key === " ") {
+      event.preventDefault(); // no scrolling, and no second press of the button that has the focus
+      if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+    }
     if (presses[key] && viewer && viewer.sendMessage) viewer.sendMessage(presses[key]);
   });
   // viser retries a lost connection only while the document has the focus; a wall display has none.

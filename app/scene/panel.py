@@ -13,6 +13,7 @@ from app.scene.controls import Ask, Controls, Html, Input
 from app.scene.graphs import Graphs
 from app.scene.hindsight import CandidateBox, GainSearch
 from app.scene.profiles import Profiles
+from app.scene.recording import MARKER, TOGGLE, Recording, banner
 from app.scene.replaying import Replaying
 from app.scene.tuning import Tuning
 
@@ -20,6 +21,7 @@ WIDTH_PX = 400
 GRAPHS_WIDTH_PX, GRAPHS_HEIGHT_PX = 800, 222
 
 KEYS = (
+    ("Space", "record, or end the recording"), ("M", "marker"),
     ("B", "swap A and B"), ("C", "apply the candidate"), ("R", "reset heading"), ("F", "full screen"),
     ("Esc", "stop (pause the replay)"),
 )  # fmt: skip
@@ -58,6 +60,8 @@ class Panel:
         self._graphs = _graph_panel(gui)
 
     def _source_tab(self, gui: viser.GuiApi) -> tuple[Html, Html]:
+        with gui.add_folder("Recording"):
+            self._recording = Recording(self._controls)
         source = self._controls.html()
         with gui.add_folder("Profiles"):
             self._profiles = Profiles(self._controls)
@@ -89,6 +93,7 @@ class Panel:
     def keys(self) -> dict[str, tuple[str, str]]:
         """Which control a key presses, and with what value."""
         return {
+            " ": (self._recording.buttons.id, TOGGLE), "m": (self._recording.buttons.id, MARKER),
             "b": (self._box.slots.id, "Swap"), "c": (self._box.buttons.id, "Apply"),
             "r": (self._walk.id, "Reset heading"), "escape": (self._replaying.buttons.id, "Pause"),
         }  # fmt: skip
@@ -104,11 +109,12 @@ class Panel:
     def show_text(self, snapshot: Snapshot, status: Status, view: View) -> None:
         """Words, figures and controls: at most ten times a second."""
         self._header.show(figures.header(status))
-        self._message.show(figures.message(snapshot, status))
+        self._message.show(banner(status) + figures.message(snapshot, status))
         self._feet.show(figures.feet(snapshot))
         self._source.show(figures.source(snapshot, status))
         self._log.show(figures.log(snapshot, _rate(snapshot, status)))
         self._replaying.show(status)
+        self._recording.show(status)
         self._box.show(snapshot)
         self._search.show(status)
         self._tuning.show(snapshot)

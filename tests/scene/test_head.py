@@ -14,7 +14,7 @@ def presses(scene: Scene) -> dict[str, dict[str, object]]:
 
 def test_each_key_presses_a_control_with_a_value_its_rule_allows(scene: Scene) -> None:
     asked = presses(scene)
-    assert set(asked) == {"b", "c", "r", "escape"}
+    assert set(asked) == {"b", "c", "r", "escape", " ", "m"}
     for message in asked.values():
         rule = scene.rules()[str(message["uuid"])]
         assert message["updates"]["value"] in rule.choices  # type: ignore[index]
