@@ -9,6 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.estimator.smoother import finish
 from app.estimator.tracker import Tracker, store
 from app.motion import Floats, Recording, Samples
 from app.outputs import tables
@@ -38,6 +39,7 @@ def process(spec: str, settings: Settings) -> Processed:
         tracker = Tracker(settings)
         began = time.perf_counter()
         tracker.advance(samples)
+        finish(tracker, samples)
         estimator_s += time.perf_counter() - began
         trackers[sensor.sensor] = tracker
     return Processed(recording, settings, trackers, estimator_s)

@@ -194,6 +194,15 @@ class Settings:
         ),
     )  # fmt: skip
 
+    hindsight: bool = _setting(
+        False,
+        Limit(
+            "In hindsight", "", "",
+            "Kalman filter: estimate each step by what came after it too, once the walk is over; a live"
+            " walk runs as without.",
+        ),
+    )  # fmt: skip
+
     def __post_init__(self) -> None:
         for f in fields(self):
             value = _checked(f.name, getattr(self, f.name), f.default, f.metadata["limit"])
@@ -217,7 +226,11 @@ class Settings:
 
 
 LIMITS: dict[str, Limit] = {f.name: f.metadata["limit"] for f in fields(Settings)}
-BUILT_IN: dict[str, Settings] = {"papers": Settings()}
+BUILT_IN: dict[str, Settings] = {
+    "papers": Settings(),
+    "default": Settings(estimator="kalman"),
+    "hindsight": Settings(estimator="kalman", hindsight=True),
+}
 
 
 def parse(name: str, text: str) -> Value:

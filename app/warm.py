@@ -9,6 +9,7 @@ import numpy as np
 from app.blocks import Blocks
 from app.estimator.corrections import EVENT_WIDTH, correct
 from app.estimator.methods import METHODS
+from app.estimator.smoother import smooth
 from app.estimator.strides import contact_at, lift_above_line
 from app.estimator.sweep import sweep
 from app.estimator.tracker import Tracker
@@ -46,6 +47,7 @@ def parts() -> Iterator[tuple[str, Callable[[], None]]]:
     def kalman() -> None:
         tracker = Tracker(Settings(estimator="kalman"))
         tracker.advance(samples)
+        smooth(tracker, samples)
         METHODS["kalman"].correct(rows, 0, samples.table(0, 1), event, tracker.state)
 
     def trails() -> None:

@@ -13,6 +13,7 @@ from app.motion import InputError
 from app.settings import BUILT_IN, LIMITS, Settings
 
 PAPERS = BUILT_IN["papers"]
+BUILT_IN_NAMES = ("papers", "default", "hindsight")
 BAD_NAMES = [
     "../x",
     "a/b",
@@ -52,11 +53,11 @@ def test_a_profile_comes_back_as_saved(gain: float, threshold: float, heading: f
 
 
 def test_names_are_the_built_in_and_the_saved_ones() -> None:
-    assert profiles.names() == ("papers",)
+    assert profiles.names() == BUILT_IN_NAMES
     profiles.save("zoo", PAPERS)
     profiles.save("Ärmel 2", PAPERS)
     (profiles.folder() / ".secret.toml").write_text("")
-    assert profiles.names() == ("papers", "zoo", "Ärmel 2")
+    assert profiles.names() == (*BUILT_IN_NAMES, "zoo", "Ärmel 2")
 
 
 def test_what_a_profile_leaves_out_is_as_in_papers(tmp_path: Path) -> None:
@@ -127,12 +128,12 @@ def test_a_built_in_profile_is_not_overwritten() -> None:
     profiles.folder().mkdir(parents=True)
     (profiles.folder() / "papers.toml").write_text("gain_stance = 2")
     assert profiles.load("papers") == PAPERS
-    assert profiles.names() == ("papers",)
+    assert profiles.names() == BUILT_IN_NAMES
 
 
 def test_an_unknown_name_says_what_there_is() -> None:
     profiles.save("zoo", PAPERS)
-    with pytest.raises(InputError, match="papers, zoo"):
+    with pytest.raises(InputError, match="hindsight, zoo"):
         profiles.load("nothing")
 
 
@@ -145,7 +146,7 @@ def test_a_missing_file_a_folder_and_a_device_are_one_error_each(tmp_path: Path)
 def test_a_folder_that_cannot_be_made_is_one_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "file").write_text("")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path / "file" / "config"))
-    assert profiles.names() == ("papers",)
+    assert profiles.names() == BUILT_IN_NAMES
     with pytest.raises(InputError, match="cannot be saved"):
         profiles.save("zoo", PAPERS)
     with pytest.raises(InputError, match="not found"):

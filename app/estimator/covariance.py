@@ -56,11 +56,14 @@ def add_turn_about(P: Floats, axis_n: Vector, variance: float) -> None:
 
 
 @kernel
-def measure(P: Floats, shift: Floats, gain: Floats, part: int, away: float, variance: float) -> None:
+def measure(
+    P: Floats, shift: Floats, gain: Floats, part: int, away: float, variance: float
+) -> tuple[float, float]:
     """One scalar measurement of one part of the error state, which differs by ``away`` from the estimate.
 
-    ``shift`` [15] is what this update has found so far, ``gain`` [15] working space. One rank at a time
-    P stays symmetric, and exactly so: the same product stands on both sides of the diagonal.
+    ``shift`` [15] is what this update has found so far; ``gain`` [15] becomes the column of P it saw.
+    Returns the total variance, and how far the measurement was away from what was found so far.
+    One rank at a time P stays symmetric, and exactly so.
     """
     total = P[part, part] + variance
     left = away - shift[part]
@@ -71,3 +74,4 @@ def measure(P: Floats, shift: Floats, gain: Floats, part: int, away: float, vari
         for j in range(i + 1):
             P[i, j] -= gain[i] * gain[j] / total
             P[j, i] = P[i, j]
+    return total, left

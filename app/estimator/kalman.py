@@ -56,6 +56,8 @@ def step(state: KalmanState, reading: Reading) -> int:
     place = remember(state)
     state.statistic, rate2 = window_statistic(state)
     energy, least = remember_gait(state)
+    if state.told != 0.0:
+        energy, least = state.told_energy, state.told_least
     if state.levelled == 0.0:
         happened |= find_level(state, reading.field_b)
         level(state)
@@ -64,6 +66,7 @@ def step(state: KalmanState, reading: Reading) -> int:
     if not happened & s.RESTING:
         predict(state, force_before, rate_before, dt_s)
         mind_clipping(state, rate_before, dt_s)
+        state.totals[0] = 0.0
         note_motion(state, place)
         stood = stands(state, energy, least, rate2, dt_s)
         if stood:
@@ -172,6 +175,9 @@ def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, d
     state.vx, state.vy, state.vz = state.vx + gained[0], state.vy + gained[1], state.vz + gained[2]
     state.gained_x, state.gained_y = state.gained_x + gained[0], state.gained_y + gained[1]
     state.gained_z += gained[2]
+    state.dt_s = dt_s
+    state.half0, state.half1, state.half2, state.half3 = q_half
+    state.push_x, state.push_y, state.push_z = force_n
     propagate(state.P, q_half, force_n, dt_s)
     add_variance(state.P, VELOCITY_AT, FORCE_NOISE**2 * dt_s)
     add_variance(state.P, ATTITUDE_AT, RATE_NOISE**2 * dt_s)
@@ -217,7 +223,9 @@ def zero_velocity(state: KalmanState) -> None:
     for k in range(3):
         roll = state.ring[i, RING_ROLL + k] if k < 2 else 0.0
         away = roll - velocity[k] - state.ring[i, RING_GAIN + k]
-        measure(state.P, state.shift, state.gain, VELOCITY_AT + k, away, variance)
+        state.totals[k], state.lefts[k] = measure(
+            state.P, state.shift, state.gains[k], VELOCITY_AT + k, away, variance
+        )
     take_shift(state)
 
 

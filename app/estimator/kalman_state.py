@@ -145,6 +145,18 @@ class KalmanState(Parameters, Window):
     start_x: float
     start_y: float
     start_z: float
+    told: float  # 1: the gait around the sample is told (in hindsight), not remembered
+    told_energy: float
+    told_least: float
+    learnt: float  # 1: a still window has just set the gyro bias
+    dt_s: float  # of the last prediction, and what it turned and pushed by: for the smoother
+    half0: float
+    half1: float
+    half2: float
+    half3: float
+    push_x: float
+    push_y: float
+    push_z: float
     P: Floats  # [15, 15]
     gyro_bias: Floats  # [3], rad/s
     force_bias: Floats  # [3], m/s²
@@ -156,7 +168,9 @@ class KalmanState(Parameters, Window):
     fifth_sum: Floats  # [3]: of the fifths' means, and of their squares
     fifth_squares: Floats
     clip: Floats  # [3, 3]: for each gyro axis: clipped samples in a row, slope on the way in, their seconds
-    gain: Floats  # [15]: working space of an update
+    gains: Floats  # [3, 15]: the column of P that each measurement of the last update saw,
+    totals: Floats  # [3]: its variance and P's (0: there was none),
+    lefts: Floats  # [3]: and how far it was away
     shift: Floats  # [15]: what an update found
 
 
@@ -172,14 +186,17 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "fifth_sum": (3,),
     "fifth_squares": (3,),
     "clip": (3, 3),
-    "gain": (PARTS,),
+    "gains": (3, PARTS),
+    "totals": (3,),
+    "lefts": (3,),
     "shift": (PARTS,),
 }
 KALMAN = np.dtype([(name, np.float64, SHAPES.get(name, ())) for name in dtype_of(KalmanState).names or ()])
 
 
 _VECTORS = (
-    "p", "v", "gained_", "corrected_", "turned_", "from_", "at_", "before_", "unturned_", "slowed_", "start_"
+    "p", "v", "gained_", "corrected_", "turned_", "from_", "at_", "before_", "unturned_", "slowed_", "start_",
+    "push_",
 )  # fmt: skip
 
 

@@ -129,6 +129,7 @@ def learn_bias(state: KalmanState) -> None:
             state.bias_sum[k] += info * mean
         state.gyro_bias[k] = state.bias_sum[k] / state.bias_info[k]
         doubt_bias(state, k, state.bias_info[k])
+    state.learnt = 1.0
     begin_window(state)
 
 

@@ -113,6 +113,20 @@ class Tracker:
         self.strides.append(stride)
         self.distance_m += stride.length_m
 
+    def retell(self, events: list[Floats]) -> None:
+        """Make the strides anew from these events and the rows as they are now."""
+        base = self._base if self.rows.start == 0 else self.checkpoints[self.rows.start]
+        self._contact, self.distance_m = base.contact, base.distance_m
+        self.strides = [stride for stride in self.strides if stride.number <= base.strides]
+        breaks = list(self.segments)
+        for event in events:
+            while breaks and breaks[0] <= event[Event.LIFT_ROW]:
+                self._contact, _ = None, breaks.pop(0)
+            for axis in range(3):
+                event[Event.START + axis] = self._row(max(int(event[Event.LIFT_ROW]), self.rows.start))[axis]
+                event[Event.END + axis] = self._row(int(event[Event.CONTACT_ROW]))[axis]
+            self._add_stride(event)
+
     def _lifted(self, event: Floats, lift: int, lift_s: float) -> Contact:
         """Where a segment's first swing began."""
         north, east, down = event[Event.START : Event.START + 3].tolist()  # the row at the lift may be gone
