@@ -10,8 +10,12 @@ from typing import NamedTuple
 import numpy as np
 
 from app.estimator.smoother import finish
-from app.estimator.tracker import Tracker, store
-from app.motion import Floats, Recording, Samples
+from app.estimator.tracker import Tracker, store, track
+from app.gestures.default import DefaultDecoder
+from app.gestures.merge import changes, decode
+from app.gestures.papers import PapersDecoder
+from app.gestures.words import Decision
+from app.motion import ATTITUDE, Floats, InputError, Recording, Role, Samples
 from app.outputs import tables
 from app.settings import Settings
 from app.sources.opening import open_recording
@@ -91,6 +95,73 @@ def _table(sensor: Samples, done: Processed, first_ns: int) -> tables.FootTable:
     offset_s = (sensor.device_ns - first_ns) * 1e-9
     t_s: Floats = ((sensor.device_ns - first_ns) + sensor.matrix[:, 0]) * 1e-9
     return tables.FootTable(sensor.sensor, t_s, rows, tracker.strides, offset_s)
+
+
+class Decoded(NamedTuple):
+    """A recording of two feet and what they asked for: the changes of motion or speed."""
+
+    recording: Recording
+    decoder: str
+    decisions: list[Decision]
+    start_ns: int
+
+
+def decode_gestures(spec: str, name: str) -> Decoded:
+    """Read a recording of two feet and decode it; ``InputError`` if a foot is missing."""
+    recording, _ = open_recording(parse_spec(spec))
+    feet = {samples.role: samples for samples in recording.sensors}
+    if not {Role.LEFT, Role.RIGHT} <= set(feet):
+        came = ", ".join(samples.sensor for samples in recording.sensors) or "no sensor"
+        raise InputError(
+            f"{recording.name}: {came}: expected the sensors left and right, for gestures take two feet"
+        )
+    both = {role: feet[role] for role in (Role.LEFT, Role.RIGHT)}
+    if name == "papers":  # the only one that looks at the heading
+        found = decode(PapersDecoder(), both, {role: _orientation(samples) for role, samples in both.items()})
+    else:
+        found = decode(DefaultDecoder(), both)
+    return Decoded(recording, name, changes(found), min(samples.device_ns for samples in both.values()))
+
+
+def _orientation(samples: Samples) -> Floats:
+    rows = track(samples, Settings()).rows
+    return rows.table(rows.start, rows.end)[:, ATTITUDE]
+
+
+def gestures_summary(done: Decoded) -> dict[str, object]:
+    """What ``gestures --json`` prints (contract.md)."""
+    return {
+        "recording": done.recording.name,
+        "format": done.recording.format,
+        "assumed": list(done.recording.assumed),
+        "duration_s": done.recording.duration_s,
+        "decoder": done.decoder,
+        "decisions": [
+            {
+                "t_s": (decision.t_ns - done.start_ns) * 1e-9,
+                "motion_id": int(decision.motion),
+                "motion": decision.motion.name.lower(),
+                "speed_mps": decision.speed_mps,
+                "turn_radps": decision.turn_radps,
+                "confidence": decision.confidence,
+                "certain": decision.certain,
+                "cadence_hz": decision.cadence_hz,
+                "reason": decision.reason,
+            }
+            for decision in done.decisions
+        ],
+    }
+
+
+def gestures_lines(done: Decoded) -> list[str]:
+    """The decisions for a person."""
+    recording = done.recording
+    text = [f"{recording.name} ({recording.format}): {recording.duration_s:.1f} s, decoder {done.decoder}"]
+    for d in done.decisions:
+        doubt = "" if d.certain else ", not yet certain"
+        what = f"{d.motion.name.lower()} {d.speed_mps:.2f} m/s{doubt}: {d.reason}"
+        text.append(f"  {(d.t_ns - done.start_ns) * 1e-9:8.2f} s  {what}")
+    return text
 
 
 def lines(done: Processed) -> list[str]:

@@ -16,7 +16,18 @@ import numpy as np
 
 from app.motion import Floats, InputError, Ints, MotionId, Recording, Samples, Truth
 from app.simulate.foot import Motion, rotate_to_body
-from app.simulate.gestures_actions import Action, Draw, add_up, drawer, march, shift, step_back, tap, twist
+from app.simulate.gestures_actions import (
+    Action,
+    Draw,
+    add_up,
+    drawer,
+    give,
+    march,
+    shift,
+    step_back,
+    tap,
+    twist,
+)
 from app.simulate.gestures_options import GESTURES, Bar, GestureOptions, bars_of, parse, spec_of
 from app.simulate.gestures_steps import Steps, sum_of
 from app.simulate.sensors import TABLE_II_NOISE, SensorErrors, ideal_readings, read
@@ -188,6 +199,9 @@ class Performer:
             duration = share * cycle * draw(0.95, 1.05)
             part = _PARTS[motion][FEET.index(foot)]
             self.actions[foot].append(self._action(part, foot, t, duration, size * draw(0.85, 1.15)))
+            self.actions[_other(foot)].append(
+                give(t, duration, o.transient * min(1.0, 0.5 + 0.5 * size), draw)
+            )
             starts.append(t)
             self.moved_s = t + duration
             t += intervals[(len(starts) - 1) % len(feet)] * draw(0.95, 1.05)
@@ -221,6 +235,10 @@ class Performer:
                     self.actions[each].append(shift(t, duration, draw))
             self.moved_s = t + duration
             t = self.moved_s + draw(0.05, 0.6)
+
+
+def _other(foot: str) -> str:
+    return FEET[1 - FEET.index(foot)]
 
 
 def _sensor(name: str, foot: GestureFoot, elapsed_ns: Floats, options: GestureOptions) -> Samples:

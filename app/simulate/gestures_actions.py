@@ -147,6 +147,15 @@ def shift(start_s: float, duration_s: float, draw: Draw) -> Action:
     return action
 
 
+def give(start_s: float, duration_s: float, size: float, draw: Draw) -> Action:
+    """What the standing foot does while the other is in the air: it takes the weight and gives a little."""
+    return {
+        "yaw": _there_and_back(start_s, duration_s, size * draw(-0.035, 0.035), draw),
+        "pitch": _there_and_back(start_s, duration_s, size * draw(-0.035, 0.01), draw),
+        "roll": _there_and_back(start_s, duration_s, size * draw(-0.03, 0.03), draw),
+    }
+
+
 def add_up(actions: list[Action]) -> dict[str, list[Step]]:
     """All actions of one foot, channel by channel."""
     return {channel: [step for action in actions for step in action.get(channel, [])] for channel in CHANNELS}

@@ -85,8 +85,9 @@ def test_marching_lifts_the_heel_first_and_stepping_back_the_toe() -> None:
     for gesture, sign in (("forward", -1.0), ("backward", 1.0)):
         made = make_gestures({"script": f"none:1,{gesture}:5", **EXACT})
         for foot in made.feet.values():
-            begin = foot.channels["pitch"].start_s.min()
-            assert sign * foot.channels["pitch"].at(np.array([begin + 0.1])).value[0] > 0.05
+            pitch = foot.channels["pitch"]
+            begin = pitch.start_s[np.abs(pitch.size) > 0.1].min()
+            assert sign * pitch.at(np.array([begin + 0.1])).value[0] > 0.05
 
 
 def test_the_bouts_say_the_cadence() -> None:

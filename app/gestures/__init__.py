@@ -1,0 +1,1 @@
+"""Heart: motion of two feet into intention, intention into a way through the world."""
