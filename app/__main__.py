@@ -67,6 +67,19 @@ def parser() -> Parser:
     tell.add_argument("file", metavar="FILE")
     tell.add_argument("--json", action="store_true", help="print one JSON object and nothing else")
 
+    give = commands.add_parser("export", help="a recording in another format, as a new file")
+    give.add_argument("file", metavar="FILE")
+    give.add_argument(
+        "--format", required=True, choices=("csv", "tum", "strides", "gpx", "kml", "geojson", "sto"),
+        help="csv: the samples; sto: orientations for OpenSim; the others: the estimated walk",
+    )  # fmt: skip
+    give.add_argument("--out", metavar="PATH", type=Path, help="where to (beside the recording)")
+    give.add_argument("--origin", metavar="LAT,LON[,ALT]", help="where the walk starts, for a map")
+    give.add_argument(
+        "--declination", metavar="DEG", type=float, default=0.0, help="magnetic north east of true north"
+    )
+    _add_settings(give)
+
     process = commands.add_parser("process", help="a recording without a browser")
     process.add_argument("recording", metavar="RECORDING")
     _add_settings(process)
@@ -200,12 +213,31 @@ def run_gestures(options: argparse.Namespace) -> int:
     return 0
 
 
+def run_export(options: argparse.Namespace) -> int:
+    """A recording in another format."""
+    from app import batch, export
+
+    wish = export.Wish(options.format, options.out, options.origin, options.declination)
+    wish.place()  # before any work
+    if options.format == "csv":
+        files = export.samples(options.file, wish)
+    else:
+        done = batch.process(options.file, settings_of(options))
+        files = export.walk(options.file, wish, done.recording, done.trackers)
+    for path in files:
+        print(f"wrote {path}")
+    return 0
+
+
 RUN = {
     "walk": run_walk,
     "process": run_process,
     "record": run_record,
     "recover": run_recover,
-    "info": run_info, "gestures": run_gestures}
+    "info": run_info,
+    "export": run_export,
+    "gestures": run_gestures,
+}
 
 
 def settings_of(options: argparse.Namespace) -> Settings:

@@ -25,7 +25,7 @@ HEART = {
 }
 HEART |= {"estimator", "gestures", "simulate", "formats", "studies"}
 EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed"}
-SHELL = {"run", "batch", "record", "library", "__main__", "__init__"}
+SHELL = {"run", "batch", "record", "library", "export", "__main__", "__init__"}
 CLOCKS_AND_FILES = {"asyncio", "concurrent", "glob", "http", "multiprocessing", "os", "pathlib", "selectors"}
 CLOCKS_AND_FILES |= {"shutil", "socket", "ssl", "subprocess", "tempfile", "threading", "time", "urllib"}
 ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources", "zstandard": "compressed"}

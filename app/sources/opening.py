@@ -59,7 +59,8 @@ def _truth_of(recording: Recording) -> Truth | None:
         _log.warning("%s: no truth: its SPEC is of another version (%s)", recording.name, error)
         return None
     if made is None or not _same(recording, made):
-        _log.warning("%s: no truth: its rows are not those of %s", recording.name, recording.spec)
+        level = logging.INFO if recording.journal else logging.WARNING  # a part of a walk is nothing wrong
+        _log.log(level, "%s: no truth: its rows are not those of %s", recording.name, recording.spec)
         return None
     return truth
 
