@@ -444,6 +444,16 @@ class Health(NamedTuple):
     segments: int
 
 
+class Trust(NamedTuple):
+    """How sure an estimator is of where a foot is: the ellipse that holds it 95 times of 100, and a word."""
+
+    major_m: float  # half axes of the ellipse on the floor
+    minor_m: float
+    angle_rad: float  # of the major axis, clockwise from north
+    word: str  # "good" | "drifting" | "lost"
+    why: str  # empty where it is good
+
+
 class FootView(NamedTuple):
     """One foot of one track, now."""
 
@@ -464,6 +474,7 @@ class FootView(NamedTuple):
     trail: Trail
     footprints: tuple[Footprint, ...]  # the newest few
     error_m: float | None  # distance to the simulator's truth
+    trust: Trust | None = None  # None: the estimator does not know
 
 
 class TrackView(NamedTuple):

@@ -190,6 +190,7 @@ class FootTrack:
             trail=self.trail(),
             footprints=self.footprints(),
             error_m=None if true is None else self._error_m(true),
+            trust=tracker.trust,
         )
 
     def _error_m(self, true: TruePlace) -> float:

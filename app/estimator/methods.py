@@ -9,9 +9,14 @@ from typing import NamedTuple
 from app.estimator import corrections, kalman_run, kalman_state, papers_run, resume, state
 from app.estimator.gait import SWING
 from app.estimator.state import Record
-from app.motion import Floats
+from app.estimator.trust import trust_of
+from app.motion import Floats, Trust
 from app.rotation import yaw_of
 from app.settings import Settings
+
+
+def _unknown(_: Record, __: float) -> Trust | None:
+    return None
 
 
 class Method(NamedTuple):
@@ -22,6 +27,7 @@ class Method(NamedTuple):
     run: Callable[[Record, Floats, Floats, int, int, Floats], tuple[int, int]]
     correct: Callable[[Floats, int, Floats, Floats, Record], None]
     moves: Callable[[Record], bool]  # whether rows since the lift may still change
+    trust: Callable[[Record, float], Trust | None]  # how sure it is, after so many metres
     events: int  # that a run may report before it pauses for them to be applied
 
 
@@ -39,7 +45,7 @@ def _kalman_moves(record: Record) -> bool:
 
 METHODS: dict[str, Method] = {
     "papers": Method(
-        state.new_state, resume.resume, papers_run.run, _papers_correct, _papers_moves, events=64
+        state.new_state, resume.resume, papers_run.run, _papers_correct, _papers_moves, _unknown, events=64
     ),
     # its corrections read the state as the event left it: one event a run
     "kalman": Method(  # its corrections read the state as the event left it: one event a run
@@ -48,6 +54,7 @@ METHODS: dict[str, Method] = {
         kalman_run.run,
         kalman_run.correct,
         _kalman_moves,
+        trust_of,
         events=1,
     ),
 }

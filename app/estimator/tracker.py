@@ -12,7 +12,7 @@ from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
 from app.estimator.strides import Contact, contact_at, lift_above_line, stride_between, turned
-from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples, Stride
+from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples, Stride, Trust
 from app.settings import Settings
 
 
@@ -52,6 +52,11 @@ class Tracker:
     def levelled(self) -> bool:
         """Whether level has been found."""
         return bool(self.state["levelled"][0])
+
+    @property
+    def trust(self) -> Trust | None:
+        """How sure the estimator is of where the foot is; None where it cannot know."""
+        return self.method.trust(self.state, self.distance_m)
 
     @property
     def settled_end(self) -> int:

@@ -79,8 +79,18 @@ def _card(foot: FootView) -> str:
     grid = "".join(_tile(*tile) for tile in tiles)
     return (
         f'<div class="ss-card ss-{foot.role.value}"><div class="ss-card-head"><span class="ss-dot"></span>'
-        f"{FEET[foot.role]}{badge(foot)}</div><div class=\"ss-tiles\">{grid}</div></div>"
+        f"{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class=\"ss-tiles\">{grid}</div></div>"
     )
+
+
+def trust(foot: FootView) -> str:
+    """How sure the estimator is: half the long axis of the 95 % ellipse, and a word with its reason."""
+    if foot.trust is None:
+        return ""
+    sure = foot.trust
+    away = " ".join(words.metres(sure.major_m))
+    why = f": {words.plain(sure.why)}" if sure.why else ""
+    return f'<small title="95 times of 100 within this">&nbsp;± {away}, {words.plain(sure.word)}{why}</small>'
 
 
 def badge(foot: FootView) -> str:

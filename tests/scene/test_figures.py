@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.motion import Change, GaitPhase, Link, Snapshot, Status
+from app.motion import Change, GaitPhase, Link, Snapshot, Status, Trust
 from app.scene import figures, words
 from app.settings import Settings
 from tests.scene import fakes
@@ -103,3 +103,13 @@ def test_north_is_magnetic_only_with_the_magnetometer() -> None:
     assert "the start heading" in figures.source(snapshot, fakes.status())
     held = snapshot.main._replace(settings=Settings(magnetometer=True))
     assert "magnetic north" in figures.source(replace(snapshot, main=held), fakes.status())
+
+
+def test_trust_is_a_distance_a_word_and_its_reason_or_nothing() -> None:
+    walker = fakes.foot(3.0)
+    assert figures.trust(walker) == ""
+    lost = Trust(1.234, 0.5, 0.0, "lost", "no stance for 3 s")
+    text = figures.trust(walker._replace(trust=lost))
+    assert "± 1.23 m" in text
+    assert "lost: no stance for 3 s" in text
+    assert ":" not in figures.trust(walker._replace(trust=lost._replace(word="good", why="")))
