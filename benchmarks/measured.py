@@ -25,6 +25,13 @@ class Score(NamedTuple):
     name: str
     rmse_m: float
     path_m: float
+    found_m: float = 0.0  # the estimate's own path, through the same points
+    pyshoe_m: float = 0.0  # the Vicon room: the error in the metric of that data set's authors
+
+    @property
+    def length_percent(self) -> float:
+        """By how much the estimate's path is too long, as a share of the true one."""
+        return 100.0 * (self.found_m / self.path_m - 1.0)
 
     @property
     def percent(self) -> float:
@@ -58,7 +65,11 @@ def vicon(settings: Settings) -> Iterator[Score]:
         rows = np.searchsorted(seconds - seconds[0], found.t_s - 1e-6)
         truth = truth[rows]
         yield Score(
-            path.stem, scoring.rmse_m(found.position, truth), scoring.path_m(truth, scoring.PATH_EVERY)
+            path.stem,
+            scoring.rmse_m(found.position, truth),
+            scoring.path_m(truth, scoring.PATH_EVERY),
+            scoring.path_m(found.position, scoring.PATH_EVERY),
+            scoring.pyshoe_m(found.position, truth),
         )
 
 
@@ -71,7 +82,7 @@ def corridor(settings: Settings) -> Iterator[Score]:
         found = estimate(path, settings)
         rows = np.clip(np.searchsorted(found.t_s, table[:, 1] - 1e-3), 0, len(found.t_s) - 1)
         score = scoring.rmse_m(found.position[rows, :2], truth)
-        yield Score(path.stem, score, scoring.path_m(truth))
+        yield Score(path.stem, score, scoring.path_m(truth), scoring.path_m(found.position[rows]))
 
 
 def closures(folder: str, settings: Settings) -> Iterator[tuple[str, dict[str, Any]]]:

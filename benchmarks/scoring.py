@@ -44,3 +44,17 @@ def up(position_n: Floats) -> Floats:
     """North, east, down [n, 3] as x, y, z of a right-handed frame with z up: north, west, up."""
     turned: Floats = position_n * np.array([1.0, -1.0, -1.0])
     return turned
+
+
+#: PyShoe's metric sets the yaw where the truth is first this far from the start, m.
+PYSHOE_YAW_AT_M = 0.8
+
+
+def pyshoe_m(estimate: Floats, truth: Floats) -> float:
+    """The error as PyShoe's authors publish it: 2-D, start pinned, yaw set at 0.8 m, mean distance / √2."""
+    e, t = estimate[:, :2] - estimate[0, :2], truth[:, :2] - truth[0, :2]
+    far = int(np.argmax(np.linalg.norm(t, axis=1) > PYSHOE_YAW_AT_M))
+    yaw = float(np.arctan2(t[far, 1], t[far, 0]) - np.arctan2(e[far, 1], e[far, 0]))
+    c, s = np.cos(yaw), np.sin(yaw)
+    away = e @ np.array([[c, s], [-s, c]]) - t
+    return float(np.mean(np.linalg.norm(away, axis=1)) / np.sqrt(2.0))

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from benchmarks.scoring import mirrored, path_m, rmse_m, up
+from benchmarks.scoring import mirrored, path_m, pyshoe_m, rmse_m, up
 
 PATH = np.cumsum(np.random.default_rng(0).normal(size=(200, 3)), axis=0)
 
@@ -61,3 +61,13 @@ def test_the_path_is_horizontal():
     square = np.array([[0, 0, 0], [3, 0, 9], [3, 4, -9], [0, 4, 0], [0, 0, 0]], float)
     assert path_m(square) == 14.0
     assert path_m(square, 2) == 10.0
+
+
+def test_pyshoes_metric_forgives_yaw_and_start_and_divides_by_the_root_of_two() -> None:
+    t = np.linspace(0.0, 4.0, 200)
+    truth = np.column_stack([t, 0.1 * t * t, 0 * t])
+    c, s = np.cos(0.7), np.sin(0.7)
+    turned = truth @ np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]]) + [3.0, 1.0, 5.0]
+    assert pyshoe_m(turned, truth) < 1e-12
+    longer = truth * 1.1
+    assert abs(pyshoe_m(longer, truth) - 0.1 * np.mean(np.linalg.norm(truth, axis=1)) / np.sqrt(2)) < 1e-9
