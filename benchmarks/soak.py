@@ -1,7 +1,7 @@
-"""Benchmarks: ``make soak``: the long runs: an hour of walk at 8× before two browsers, and rough handling.
+"""Benchmarks: ``make soak``, the long runs: kills of a recording, an hour before two browsers, handling.
 
 ``python benchmarks/soak.py [--minutes N] [--json]``: N minutes of clock in all (15 unless told: an hour
-of walk at 8× takes 7.5 of them, rough handling the other half).
+of walk at 8× takes 7.5 of them, rough handling the other half), and about five more for the kills.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import handling, hour
+from benchmarks import handling, hour, kills
 from benchmarks.bench import machine, measure
 from benchmarks.figures import table
 
@@ -30,7 +30,9 @@ def main() -> int:
     if not LEAST_MINUTES <= options.minutes <= MOST_MINUTES:
         parser.error(f"--minutes {options.minutes:g}: expected {LEAST_MINUTES:g} to {MOST_MINUTES:g}")
     half_s = 30.0 * options.minutes
+    count = kills.KILLS if options.minutes >= USUAL_MINUTES else kills.KILLS // 10
     parts = {
+        f"{count} kills of a recording": kills.kills(count),
         f"{8 * half_s / 60:.0f} minutes of walk at 8×": hour.hour(half_s),
         f"{half_s / 60:.1f} minutes of rough handling": handling.handling(half_s),
     }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import math
 from collections import Counter
 from dataclasses import dataclass, field
@@ -83,7 +84,14 @@ def read(name: str, data: bytes) -> Recording:
 
 def kept(name: str, data: bytes) -> Kept:
     """Everything whole in a file; ``InputError`` if it is not one of ours."""
-    contents = mcap.read(data)
+    gc.disable()  # a million messages are no garbage, and to look through them again and again costs most
+    try:
+        return _kept(name, mcap.read(data))
+    finally:
+        gc.enable()
+
+
+def _kept(name: str, contents: mcap.Contents) -> Kept:
     by_channel: dict[int, list[_Placed]] = {number: [] for number in contents.channels}
     placed = (message for chunk in contents.chunks for message in chunk)
     for place, message in enumerate(placed):

@@ -15,7 +15,8 @@ from app.simulate.options import WalkOptions, parse, spec_of
 from app.simulate.walk import SimulatedWalk, simulate
 
 ROOT = Path(__file__).parents[2]
-SPECS: dict[str, str] = runpy.run_path(str(ROOT / "tools" / "make_recordings.py"))["SPECS"]
+TOOL = runpy.run_path(str(ROOT / "tools" / "make_recordings.py"))
+SPECS: dict[str, str] = TOOL["SPECS"]
 
 
 def options_of(query: str) -> WalkOptions:
@@ -81,3 +82,11 @@ def test_the_demo_starts_far_from_its_magnet(demo: SimulatedWalk) -> None:
         north, east = sensor.matrix[:100, 7:9].mean(axis=0)
         assert abs(np.arctan2(-east, north)) < np.radians(1.0)
         assert np.ptp(np.linalg.norm(sensor.matrix[:, 7:10], axis=1)) > 2.0  # µT: it is there
+
+
+def test_as_mcap_it_is_the_same_recording(recording: Recording) -> None:
+    again = read("again.mcap", TOOL["as_mcap"](recording))
+    assert again.spec == recording.spec
+    for one, other in zip(recording.sensors, again.sensors, strict=True):
+        assert (one.sensor, one.role, one.device_ns) == (other.sensor, other.role, other.device_ns)
+        np.testing.assert_array_equal(one.matrix, other.matrix)
