@@ -20,7 +20,7 @@ from app.outputs import tables
 from app.settings import Settings
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec
-from app.warm import warm_up
+from app.warm import warm_hindsight, warm_up
 
 
 class Processed(NamedTuple):
@@ -36,6 +36,8 @@ def process(spec: str, settings: Settings) -> Processed:
     """Read and estimate a whole recording: the same compiled steps as live."""
     recording, _ = open_recording(parse_spec(spec))
     warm_up()  # so that the seconds told are the estimator's, not the compiler's
+    if settings.hindsight:
+        warm_hindsight()
     estimator_s = 0.0
     trackers = {}
     for sensor in recording.sensors:

@@ -15,7 +15,7 @@ from app.estimator.sweep import sweep
 from app.estimator.tracker import Tracker
 from app.motion import ROW_WIDTH, SAMPLE_WIDTH
 from app.rotation import from_yaw, rotate, yaw_of
-from app.settings import Settings
+from app.settings import BUILT_IN, Settings
 from app.trail import TrailBuilder, coarser
 
 
@@ -47,7 +47,6 @@ def parts() -> Iterator[tuple[str, Callable[[], None]]]:
     def kalman() -> None:
         tracker = Tracker(Settings(estimator="kalman"))
         tracker.advance(samples)
-        smooth(tracker, samples)
         METHODS["kalman"].correct(rows, 0, samples.table(0, 1), event, tracker.state)
 
     def trails() -> None:
@@ -63,6 +62,14 @@ def parts() -> Iterator[tuple[str, Callable[[], None]]]:
     yield "corrections", corrections
     yield "trails", trails
     yield "the search for gains", search
+
+
+def warm_hindsight() -> None:
+    """Compile what only a walk that is over needs."""
+    samples = still_samples()
+    tracker = Tracker(BUILT_IN["hindsight"])
+    tracker.advance(samples)
+    smooth(tracker, samples)
 
 
 def warm_up(tell: Callable[[str], None] = lambda what: None) -> None:
