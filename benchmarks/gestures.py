@@ -53,7 +53,7 @@ def gestures() -> Section:
     for cell, options in cells.items():
         made = simulate(options)
         for name, decisions in decoded(made):
-            score = score_of(made, decisions)
+            score = score_of(made, decisions, backward=name == "default")
             ours = name == "default"
             goal = wanted.get(cell) if ours else None
             yield Figure(
@@ -122,8 +122,8 @@ def feet_of(made: SimulatedGestures) -> dict[Role, Samples]:
     return {samples.role: samples for samples in made.recording.sensors}
 
 
-def score_of(made: SimulatedGestures, decisions: list[Decision]) -> Score:
-    """Decisions against the truth."""
+def score_of(made: SimulatedGestures, decisions: list[Decision], backward: bool = True) -> Score:
+    """Decisions against the truth; without ``backward``, only the motions of Table 14."""
     t = np.array([d.t_ns * 1e-9 for d in decisions])
     motion = np.array([int(d.motion) for d in decisions])
     right = total = 0
@@ -132,6 +132,8 @@ def score_of(made: SimulatedGestures, decisions: list[Decision]) -> Score:
         name: [] for name in ("first", "beyond", "certain", "two", "one", "cadence")
     }
     for bout, following in zip(made.bouts, [*made.bouts[1:], None], strict=True):
+        if bout.motion == MotionId.BACKWARD and not backward:
+            continue
         frames = np.arange(bout.onset_s + bout.cycle_s + 0.2, bout.end_s, _FRAME_S)
         said = motion[np.clip(np.searchsorted(t, frames, side="right") - 1, 0, None)]
         right, total = right + int(np.sum(said == bout.motion)), total + len(frames)

@@ -109,7 +109,7 @@ def kind_now(foot: Foot) -> tuple[float, float]:
         return TWIST, twisted
     if foot.pitch_most > -foot.pitch_least or foot.now == TOE_UP or foot.now == BACK:
         # the toe rose first; only a foot that has left the floor can tip the other way
-        if foot.pitch_least < -0.25 * foot.pitch_most - 0.02 and foot.pitch_most > 0.05:
+        if foot.pitch_least < -0.2 * foot.pitch_most - 0.015 and foot.pitch_most > 0.03:
             return BACK, -twisted
         if foot.now != STEP:
             return (BACK if foot.now == BACK else TOE_UP), -twisted
@@ -144,6 +144,7 @@ def step_foot(
     foot.rate_most = max(foot.rate_most, rate)
     foot.now, foot.margin = kind_now(foot)
     turned = math.sqrt(foot.yaw * foot.yaw + foot.pitch * foot.pitch + foot.roll * foot.roll)
+    turned = max(turned, foot.pitch_most - foot.pitch_least)  # a small step back tips both ways
     fresh = foot.sure == 0.0 and turned >= sure_rad and foot.rate_most >= on_radps
     if fresh:
         become_sure(foot)
@@ -179,8 +180,13 @@ def settle_kind(foot: Foot) -> None:
 
 @kernel
 def ended(foot: Foot, now_s: float) -> bool:
-    """Quiet, and back where it began; or quiet for long; or too long."""
-    back = abs(foot.yaw) < 0.35 * foot.yaw_peak + 0.03 and abs(foot.pitch) < 0.35 * foot.pitch_peak + 0.03
+    """Quiet, and back where it began; or quiet for long; or too long.
+
+    Turning about one axis leaks into the other, the more the further it goes.
+    """
+    yaw_room = 0.03 + max(0.35 * foot.yaw_peak, 0.25 * foot.pitch_peak)
+    pitch_room = 0.03 + max(0.35 * foot.pitch_peak, 0.25 * foot.yaw_peak)
+    back = abs(foot.yaw) < yaw_room and abs(foot.pitch) < pitch_room
     quiet = foot.below_s >= _QUIET_S and back
     return quiet or foot.below_s >= _STUCK_S or now_s - foot.begin_s > _LONGEST_S
 

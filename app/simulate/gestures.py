@@ -194,11 +194,11 @@ class Performer:
         starts: list[float] = []
         while len(starts) < 2 * len(feet) or t + share * cycle <= end_s:
             if starts and self.rng.random() < o.hesitation:
-                t += cycle * draw(0.05, 0.2)
+                t += cycle * draw(0.05, 0.25)
             foot = feet[len(starts) % len(feet)]
             duration = share * cycle * draw(0.95, 1.05)
             part = _PARTS[motion][FEET.index(foot)]
-            self.actions[foot].append(self._action(part, foot, t, duration, size * draw(0.85, 1.15)))
+            self.actions[foot].append(self._action(part, foot, t, duration, size * draw(0.75, 1.25)))
             self.actions[_other(foot)].append(
                 give(t, duration, o.transient * min(1.0, 0.5 + 0.5 * size), draw)
             )
