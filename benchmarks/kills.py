@@ -1,4 +1,4 @@
-"""Benchmarks: kill −9 at random moments of a recording of two feet at 400 Hz: what is lost, what comes back."""
+"""Benchmarks: kill −9 at random moments of recording two feet at 400 Hz: what is lost, what comes back."""
 
 from __future__ import annotations
 

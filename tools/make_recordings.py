@@ -1,6 +1,6 @@
 """Make the shipped recordings: run it from the repository's root, `python tools/make_recordings.py`.
 
-Each becomes a plain CSV, which is shipped, and the same as MCAP, for other tools to open; MCAP is not shipped.
+Each becomes a plain CSV, which is shipped, and the same as MCAP, which is not: for other tools to open.
 """
 
 from __future__ import annotations

@@ -59,6 +59,7 @@ class Recorder:
         self._trouble = ""
         self._free = 0
         self._began_s = time.monotonic()
+        self._ended_s: float | None = None
         self._over = threading.Event()
         about = _about(info) | {"profile": profile, "source": source, "spec": made_by or ""}
         self._keeper = Keeper(about, info.sensors, time.time_ns() - time.monotonic_ns())
@@ -122,7 +123,12 @@ class Recorder:
         """What the page shows."""
         trouble = self._trouble or (f"{self._lost} samples not recorded" if self._lost else "")
         return RecorderState(
-            self.path.name, self.on, time.monotonic() - self._began_s, self._size, self._free, trouble
+            self.path.name,
+            self.on,
+            (self._ended_s or time.monotonic()) - self._began_s,
+            self._size,
+            self._free,
+            trouble,
         )
 
     def close(self, wait_s: float = 1.5) -> None:
@@ -144,6 +150,7 @@ class Recorder:
             log.exception("recording failed")
             self._trouble = "recording stopped by a fault of the program; what was written is whole"
         finally:
+            self._ended_s = time.monotonic()
             self._over.set()
             self._queue.clear()
             for file in (self._file, self._reserve):
