@@ -21,8 +21,8 @@ REST_CYCLES = 3.6  # from onset to onset, in lengths of an action: more is a res
 @kernel
 def reset_foot(foot: Foot) -> None:
     """Back to rest; level and bias stay."""
-    foot.moving, foot.sure, foot.above_s, foot.below_s = 0.0, 0.0, 0.0, 0.0
-    foot.rest_s, foot.now, foot.margin = 0.0, UNKNOWN, 0.0
+    foot.moving, foot.sure, foot.below_s = 0.0, 0.0, 0.0
+    foot.now, foot.margin = UNKNOWN, 0.0
     forget_actions(foot)
 
 
@@ -135,7 +135,6 @@ def step_foot(
     rates = level_rates(foot, w)
     rate = math.sqrt(rates[0] * rates[0] + rates[1] * rates[1] + rates[2] * rates[2])
     if foot.moving == 0.0:
-        foot.rest_s += dt_s
         if rate < off_radps:
             find_level(foot, f, w, dt_s)
             return False
@@ -194,7 +193,7 @@ def ended(foot: Foot, now_s: float) -> bool:
 @kernel
 def end(foot: Foot, now_s: float) -> None:
     """The foot rests again."""
-    foot.moving, foot.rest_s = 0.0, foot.below_s
+    foot.moving = 0.0
     if foot.sure != 0.0:
         if foot.now != TOE_UP or foot.kind != BACK:
             foot.kind = foot.now

@@ -22,7 +22,6 @@ class Foot:
     seen: float  # 0 until the first sample
     t_s: float  # of the last sample, on the shared clock
     fault_s: float  # when it last sent rubbish or was unplugged
-    rest_s: float  # how long it has been at rest
     levelled: float
     dx: float  # unit vector down, in the sensor's axes
     dy: float
@@ -33,7 +32,6 @@ class Foot:
     bz: float
     moving: float  # an action, or what may become one, is under way
     sure: float  # it is large enough to be one
-    above_s: float
     below_s: float
     begin_s: float  # onset of the action under way
     yaw: float  # turned since the onset, rad: about down, toe up, right edge down
@@ -57,7 +55,6 @@ class Foot:
     duration_s: float
     size: float  # |yaw| or |pitch| of the last action, rad
     actions: float  # sure ones in this bout
-    inward: float  # twists the wrong way round, in a row
 
 
 class Pair:
