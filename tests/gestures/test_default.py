@@ -177,3 +177,23 @@ def test_every_reason_is_a_sentence() -> None:
                 sentence = words(motion, why, which)
                 assert len(sentence) > 10
                 assert "{" not in sentence
+
+
+def test_feet_of_different_rates_and_late_starts_are_one_walk() -> None:
+    slow, quick = (performed("none:2,forward:6,none:2", rate=rate, vary="0") for rate in ("50", "200"))
+    feet = {Role.LEFT: feet_of(slow)[Role.LEFT], Role.RIGHT: feet_of(quick)[Role.RIGHT]}
+    decisions = decode(DefaultDecoder(), feet)
+    bout = only_bout(slow)
+    assert at(decisions, bout.end_s - 0.2).motion == MotionId.FORWARD
+    assert at(decisions, bout.end_s + 1.0).motion == MotionId.NONE
+
+
+@pytest.mark.parametrize(
+    ("performed_motion", "read"),
+    [("side_right", MotionId.SIDE_LEFT), ("forward_left", MotionId.FORWARD_RIGHT)],
+)
+def test_swapped_feet_mirror_the_motion(performed_motion: str, read: MotionId) -> None:
+    made = performed(f"none:2,{performed_motion}:6", vary="0")
+    feet = feet_of(made)
+    swapped = {Role.LEFT: feet[Role.RIGHT], Role.RIGHT: feet[Role.LEFT]}
+    assert at(decode(DefaultDecoder(), swapped), only_bout(made).end_s - 0.2).motion == read

@@ -9,6 +9,8 @@ from scipy.spatial.transform import Rotation
 from app.motion import InputError, MotionId
 from app.simulate.gestures import FEET, SimulatedGestures, make_gestures
 from app.simulate.gestures_options import GESTURES
+from app.sources.opening import open_recording
+from app.sources.spec import parse_spec
 
 EXACT = {"noise": "0", "drift": "0", "mounting": "0"}
 
@@ -128,3 +130,13 @@ def test_a_script_too_long_is_refused_and_a_foreign_sensor_too() -> None:
         make_gestures({"script": "none:36000", "rate": "2000"})
     with pytest.raises(ValueError, match="no sensor 'nose'"):
         make_gestures({"script": "none:1"}).truth("nose", np.zeros(1))
+
+
+def test_a_spec_opens_it_with_its_truth() -> None:
+    recording, truth = open_recording(parse_spec("sim:gestures?script=none:1,turn_cw:3&seed=2"))
+    assert {samples.sensor for samples in recording.sensors} == set(FEET)
+    assert truth is not None
+    position, _ = truth("left", np.array([0.5]))
+    np.testing.assert_array_equal(position, 0.0)
+    again, _ = open_recording(parse_spec(str(recording.spec)))
+    np.testing.assert_array_equal(again.sensors[0].matrix, recording.sensors[0].matrix)
