@@ -35,7 +35,7 @@ class Processed(NamedTuple):
 def process(spec: str, settings: Settings) -> Processed:
     """Read and estimate a whole recording: the same compiled steps as live."""
     recording, _ = open_recording(parse_spec(spec))
-    warm_up()  # so that the seconds told are the estimator's, not the compiler's
+    warm_up(settings.estimator)  # so that the seconds told are the estimator's, not the compiler's
     if settings.hindsight:
         warm_hindsight()
     estimator_s = 0.0

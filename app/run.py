@@ -34,6 +34,7 @@ from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
 from app.sources.opening import open_source
 from app.sources.replay import Replay
+from app.tracks import Reestimation, Track
 from app.warm import warm_up
 
 log = logging.getLogger(__name__)
@@ -172,7 +173,7 @@ class Viewer:
 
         def work() -> None:
             try:
-                warm_up(tell)
+                warm_up(self._options.settings.estimator, tell)
                 answer = partial(ready.set_result, None)
             except Exception as error:
                 answer = partial(ready.set_exception, error)
@@ -269,7 +270,7 @@ class Viewer:
             self._work.clear()
             job = self._session.wanted
             if job is not None:
-                track = await loop.run_in_executor(self._workers, job.run)
+                track = await loop.run_in_executor(self._workers, reestimated, job)
                 self._session.adopt(job, track)
                 self._fresh.set()
                 if self._session.wanted is not None:
@@ -375,6 +376,12 @@ class Viewer:
     def _health(self) -> dict[str, object]:
         """For /healthz; read on the door's thread, so only what is one read."""
         return {"link": self._link().value, "taken": self._session.number}
+
+
+def reestimated(job: Reestimation) -> Track:
+    """A job's result; an estimator that is new to this run is compiled here, not where samples wait."""
+    warm_up(job.settings.estimator)
+    return job.run()
 
 
 def replace_command(order: m.Order, command: m.Command) -> m.Order:

@@ -29,8 +29,11 @@ def still_samples(count: int = 8) -> Blocks:
     return table
 
 
-def parts() -> Iterator[tuple[str, Callable[[], None]]]:
-    """What is compiled, in words, and the call that compiles it."""
+def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
+    """What is compiled for a walk under ``estimator``, in words, and the call that compiles it.
+
+    The other estimator is compiled when somebody first asks for it, by the worker that re-estimates.
+    """
     samples = still_samples()
     rows, event = np.zeros((1, ROW_WIDTH)), np.zeros(EVENT_WIDTH)
     rows[0, 6] = 1.0
@@ -57,11 +60,13 @@ def parts() -> Iterator[tuple[str, Callable[[], None]]]:
         sweep(samples, Settings(), np.ones(1), np.ones(1))
 
     yield "orientations", orientations
-    yield "the papers' estimator", lambda: Tracker(Settings()).advance(samples)
-    yield "the Kalman filter", kalman
+    if estimator == "kalman":
+        yield "the Kalman filter", kalman
+    else:
+        yield "the papers' estimator", lambda: Tracker(Settings()).advance(samples)
+        yield "the search for gains", search
     yield "corrections", corrections
     yield "trails", trails
-    yield "the search for gains", search
 
 
 def warm_hindsight() -> None:
@@ -72,8 +77,8 @@ def warm_hindsight() -> None:
     smooth(tracker, samples)
 
 
-def warm_up(tell: Callable[[str], None] = lambda what: None) -> None:
-    """Compile, or load from the cache, every kernel; ``tell`` hears what is next."""
-    for what, compile_it in parts():
+def warm_up(estimator: str = "papers", tell: Callable[[str], None] = lambda what: None) -> None:
+    """Compile, or load from the cache, what a walk needs; ``tell`` hears what is next."""
+    for what, compile_it in parts(estimator):
         tell(what)
         compile_it()

@@ -126,12 +126,12 @@ def test_a_slider_makes_a_ghost_that_both_browsers_see(
         for seen in (page, second):
             seen.wait_for_function(GAIN_SHOWN, timeout=PATIENCE_MS)
             seen.wait_for_function(
-                f"() => ({NODES})().some(name => name.includes('ghost'))", timeout=PATIENCE_MS
+                f"() => ({NODES})().some(name => name.startsWith('/ned/ghost/'))", timeout=PATIENCE_MS
             )
         second.get_by_role("button", name="Apply", exact=True).click(timeout=PATIENCE_MS)
         for seen in (page, second):
             seen.wait_for_function(
-                f"() => !({NODES})().some(name => name.includes('ghost'))", timeout=PATIENCE_MS
+                f"() => !({NODES})().some(name => name.startsWith('/ned/ghost/'))", timeout=PATIENCE_MS
             )
             assert seen.evaluate(GAIN_SHOWN), "after Apply the slider stays where it was moved"
     finally:

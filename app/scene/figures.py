@@ -79,7 +79,7 @@ def _card(foot: FootView) -> str:
     grid = "".join(_tile(*tile) for tile in tiles)
     return (
         f'<div class="ss-card ss-{foot.role.value}"><div class="ss-card-head"><span class="ss-dot"></span>'
-        f"{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class=\"ss-tiles\">{grid}</div></div>"
+        f'{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class="ss-tiles">{grid}</div></div>'
     )
 
 

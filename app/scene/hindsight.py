@@ -44,7 +44,7 @@ class CandidateBox:
 
 
 class GainSearch:
-    """"Find gains": the button, its progress, the surface."""
+    """ "Find gains": the button, its progress, the surface."""
 
     def __init__(self, controls: Controls) -> None:
         controls.gui.add_html(

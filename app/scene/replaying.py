@@ -50,4 +50,3 @@ class Replaying:
             self._seek.show(round(min(max(status.position_s, 0.0), length), 1))
         self._speed.show(factor(status.speed))
         self._loop.show(status.loop)
-

@@ -112,7 +112,11 @@ def _key(sweep: Sweep) -> str:
     if not finite.size:
         return bar
     marks = ((0.0, finite[0]), (0.5, finite[len(finite) // 2]), (1.0, finite[-1]))
-    return bar + f'<text x="{x}" y="{TOP - 6}">to start</text>' + "".join(
-        f'<text x="{x + 13}" y="{TOP + part * (HEIGHT - 8) + 8:.1f}">{value:.2g} m</text>'
-        for part, value in marks
+    return (
+        bar
+        + f'<text x="{x}" y="{TOP - 6}">to start</text>'
+        + "".join(
+            f'<text x="{x + 13}" y="{TOP + part * (HEIGHT - 8) + 8:.1f}">{value:.2g} m</text>'
+            for part, value in marks
+        )
     )

@@ -161,4 +161,3 @@ class Walkers:
                 font_size_mode="screen", font_screen_scale=0.8,
             )  # fmt: skip
         self._note.visible = two
-

@@ -4,13 +4,15 @@ from itertools import pairwise
 
 import pytest
 
-from app.motion import InputError, Loop, Pause, RestartHere, Sample, Seek, Speed, Step
+from app.motion import InputError, Loop, Order, Pause, RestartHere, Sample, Seek, Speed, Step
 from app.sources.replay import HostClock, Replay
 
 HUNDRED_HZ = ("foot", list(range(0, 2000, 10)))  # 200 samples, 1.99 s
 
 
-async def take(stream: AsyncIterator[Sample | RestartHere], count: int) -> list[Sample | RestartHere]:
+async def take(
+    stream: AsyncIterator[Sample | Order | RestartHere], count: int
+) -> list[Sample | Order | RestartHere]:
     """The next items; a replay that stalls fails by the test's time limit."""
     return [await anext(stream) for _ in range(count)]
 
@@ -20,7 +22,7 @@ async def everything(replay: Replay) -> list[Sample]:
     return [item for item in items if isinstance(item, Sample)]
 
 
-async def stalls(stream: AsyncIterator[Sample | RestartHere]) -> asyncio.Task:
+async def stalls(stream: AsyncIterator[Sample | Order | RestartHere]) -> asyncio.Task:
     """A task that waits for the next item, after every chance to get one."""
     task = asyncio.ensure_future(anext(stream))
     for _ in range(50):
@@ -29,11 +31,11 @@ async def stalls(stream: AsyncIterator[Sample | RestartHere]) -> asyncio.Task:
     return task
 
 
-def seqs(items: Sequence[Sample | RestartHere]) -> list[int | str]:
+def seqs(items: Sequence[Sample | Order | RestartHere]) -> list[int | str]:
     return [item.seq if isinstance(item, Sample) else "restart" for item in items]
 
 
-def timeless(items: Sequence[Sample | RestartHere]) -> list[Sample]:
+def timeless(items: Sequence[Sample | Order | RestartHere]) -> list[Sample]:
     return [item._replace(host_ns=0) for item in items if isinstance(item, Sample)]
 
 
