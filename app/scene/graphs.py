@@ -47,7 +47,7 @@ class Graphs:
 
     def __init__(self, gui: viser.GuiApi, container: Any) -> None:
         self._gui, self._container = gui, container
-        self._roles: tuple[Role, ...] | None = None
+        self._shown: tuple[str, tuple[Role, ...]] | None = None  # estimator, feet
         self._plots: list[tuple[viser.GuiUplotHandle, Callable[[Snapshot, Floats], Columns]]] = []
         self._drawn: object = None
 
@@ -57,22 +57,23 @@ class Graphs:
             return
         self._drawn = snapshot.graphs
         feet = [f for f in snapshot.main.feet if f.sensor in snapshot.graphs]
-        roles = tuple(f.role for f in feet)
-        if roles != self._roles:
-            self._make(feet)
-            self._roles = roles
+        shown = (snapshot.main.settings.estimator, tuple(f.role for f in feet))
+        if shown != self._shown:
+            self._make(feet, *shown)
+            self._shown = shown
         t_s = times([snapshot.graphs[f.sensor] for f in feet])
         for plot, columns in self._plots:
             plot.data = (t_s, *columns(snapshot, t_s))
 
-    def _make(self, feet: list[FootView]) -> None:
+    def _make(self, feet: list[FootView], estimator: str, roles: tuple[Role, ...]) -> None:
         for plot, _ in self._plots:
             plot.remove()
         sensors = [f.sensor for f in feet]
-        roles = [f.role for f in feet]
+        rate = _rate_plot if estimator == "papers" else _statistic_plot
+        columns = _rate_columns if estimator == "papers" else _statistic_columns
         with self._container:
             self._plots = [
-                (_rate_plot(self._gui, roles), partial(_rate_columns, sensors)),
+                (rate(self._gui, roles), partial(columns, sensors)),
                 (_plot(self._gui, "Speed, m/s", roles), partial(_columns, sensors, "speed_mps")),
                 (_plot(self._gui, "Height, m", roles), partial(_columns, sensors, "height_m")),
             ] if feet else []  # fmt: skip
@@ -82,10 +83,13 @@ def _columns(sensors: list[str], column: str, snapshot: Snapshot, t_s: Floats) -
     return tuple(on_axis(t_s, snapshot.graphs[s], column) for s in sensors if s in snapshot.graphs)
 
 
+def _statistic_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
+    return (*_columns(sensors, "swing", snapshot, t_s), *_columns(sensors, "statistic", snapshot, t_s))
+
+
 def _rate_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
     threshold = np.full(len(t_s), snapshot.main.settings.threshold_radps)
-    phases = _columns(sensors, "swing", snapshot, t_s)
-    return (*phases, *_columns(sensors, "statistic", snapshot, t_s), threshold)
+    return (*_statistic_columns(sensors, snapshot, t_s), threshold)
 
 
 def _lines(roles: Sequence[Role], width: float = 1.6) -> list[uplot.Series]:
@@ -95,18 +99,26 @@ def _lines(roles: Sequence[Role], width: float = 1.6) -> list[uplot.Series]:
     ]
 
 
-def _rate_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
-    """|ω| and Ω_th; swing is the shaded ground behind."""
-    phases = [
+def _phases(roles: Sequence[Role]) -> list[uplot.Series]:
+    return [
         uplot.Series(
             label=f"swing {NAMES[r]}".strip(), scale="phase", width=0, points={"show": False},
             fill=css(FOOT[r] if len(roles) > 1 else SWING, 0.2),
         )
         for r in roles
     ]  # fmt: skip
+
+
+def _statistic_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    """The Kalman filter's detector: its threshold follows the gait, so no line stands for it."""
+    return _add(gui, "0.1·√T, rad/s (shaded swing)", [*_phases(roles), *_lines(roles)])
+
+
+def _rate_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    """|ω| and Ω_th; swing is the shaded ground behind."""
     hidden = uplot.Series_Points(show=False)
     threshold = uplot.Series(label="Ω_th", stroke=css(THRESHOLD), width=1.4, dash=(6, 4), points=hidden)
-    return _add(gui, "|ω|, rad/s (dashed Ω_th, shaded swing)", [*phases, *_lines(roles), threshold])
+    return _add(gui, "|ω|, rad/s (dashed Ω_th, shaded swing)", [*_phases(roles), *_lines(roles), threshold])
 
 
 def _plot(gui: viser.GuiApi, title: str, roles: Sequence[Role]) -> viser.GuiUplotHandle:

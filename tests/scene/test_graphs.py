@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -54,3 +56,16 @@ def test_the_threshold_is_the_main_tracks(scene: Scene) -> None:
     scene.draw(fakes.snapshot(5.0), fakes.status())
     rate = scene.panel._graphs._plots[0][0]
     assert set(rate.data[-1]) == {fakes.snapshot(5.0).main.settings.threshold_radps}
+
+
+def test_the_first_graph_says_what_its_estimator_judges_by(scene: Scene) -> None:
+    """Ω_th is the papers' threshold: under another method neither its line nor its name is shown."""
+    papers = fakes.snapshot(3.0)
+    settings = papers.main.settings.with_changes({"estimator": "kalman"})
+    kalman = replace(papers, main=papers.main._replace(settings=settings), graphs=dict(papers.graphs))
+    scene.panel.show_graphs(papers)
+    assert any("Ω_th" in str(m) for m in plots(scene))
+    scene.panel.show_graphs(kalman)
+    shown = [str(m) for m in plots(scene)]
+    assert any("√T" in m for m in shown)
+    assert not any("Ω_th" in m for m in shown)
