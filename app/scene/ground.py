@@ -114,7 +114,7 @@ class Ground:
     """All that never moves, under ``/ned``; only the grid comes along, by whole bold squares.
 
     Light to draw on a tablet or without a graphics card: lines, no shader over the whole floor, no
-    shadow maps (measured in software: 1.6 → 6 pictures a second). The sky is the page's own style.
+    shadow maps. The sky is the page's own style.
     """
 
     def __init__(self, scene: viser.SceneApi, dark: bool) -> None:
