@@ -1,0 +1,41 @@
+"""Shell: a recording in another format."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from app.commands.shared import Commands, add_settings, settings_of
+
+
+def add(commands: Commands) -> None:
+    """Its options."""
+    give = commands.add_parser("export", help="a recording in another format, as a new file")
+    give.add_argument("file", metavar="FILE")
+    give.add_argument(
+        "--format", required=True, choices=("csv", "tum", "strides", "gpx", "kml", "geojson", "sto"),
+        help="csv: the samples; sto: orientations for OpenSim; the others: the estimated walk",
+    )  # fmt: skip
+    give.add_argument("--out", metavar="PATH", type=Path, help="where to (beside the recording)")
+    give.add_argument("--origin", metavar="LAT,LON[,ALT]", help="where the walk starts, for a map")
+    give.add_argument(
+        "--declination", metavar="DEG", type=float, default=0.0, help="magnetic north east of true north"
+    )
+    add_settings(give)
+
+
+def run(options: argparse.Namespace) -> int:
+    """A recording in another format."""
+    from app import batch
+    from app import export as exports
+
+    wish = exports.Wish(options.format, options.out, options.origin, options.declination)
+    wish.place()  # before any work
+    if options.format == "csv":
+        files = exports.samples(options.file, wish)
+    else:
+        done = batch.process(options.file, settings_of(options))
+        files = exports.walk(options.file, wish, done.recording, done.trackers)
+    for path in files:
+        print(f"wrote {path}")
+    return 0
