@@ -556,6 +556,7 @@ class Status:
     link: Link
     stale_s: float = 0.0  # seconds without a sample while LIVE; 0 when fresh
     message: str = ""  # one line for the person (an error, or what is being prepared)
+    detail: str = ""  # one line on the link: what is tried, what was found
     replay: bool = False  # pause, step, seek and speed are possible
     speed: float = 1.0
     loop: bool = False

@@ -13,7 +13,7 @@ from app.motion import InputError, Order, RecorderState, RestartHere
 from app.outputs.recorder import Recorder
 from app.settings import Settings
 from app.sources.opening import open_source
-from app.sources.replay import Replay
+from app.sources.source import Source
 
 #: A recording without a browser may take longer to end: nobody waits for the page.
 CLOSE_S = 30.0
@@ -22,17 +22,18 @@ CLOSE_S = 30.0
 def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str], None]) -> RecorderState:
     """Record until the source ends, ``seconds`` are over or Ctrl-C; what was recorded."""
     source = open_source(spec, finish=True, changes=False)
-    recorder = Recorder(folder, "papers", spec, source.info, source.recording.spec)
+    recorder = Recorder(folder, "papers", spec, source.info, source.made_by)
     tell(f"Recording to {recorder.path}  (Ctrl-C ends it)")
     recorder.start(Start(Settings(), Settings(), False))
     try:
         asyncio.run(_fill(source, recorder, seconds))
     finally:
+        source.close()
         recorder.close(CLOSE_S)
     return recorder.state
 
 
-async def _fill(source: Replay, recorder: Recorder, seconds: float | None) -> None:
+async def _fill(source: Source, recorder: Recorder, seconds: float | None) -> None:
     task = asyncio.create_task(_take(source, recorder))
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
@@ -41,7 +42,7 @@ async def _fill(source: Replay, recorder: Recorder, seconds: float | None) -> No
         await asyncio.wait_for(task, seconds)
 
 
-async def _take(source: Replay, recorder: Recorder) -> None:
+async def _take(source: Source, recorder: Recorder) -> None:
     taken = 0
     async for item in source:
         taken += 1
@@ -50,7 +51,7 @@ async def _take(source: Replay, recorder: Recorder) -> None:
             recorder.start(Start(Settings(), Settings(), False))
         elif not isinstance(item, Order):
             recorder.sample(item)
-            while recorder.waiting > 10_000:  # as fast as possible is as fast as the disk
+            while source.replay and recorder.waiting > 10_000:  # as fast as possible is as fast as the disk
                 await asyncio.sleep(0.01)
         if not recorder.on:
             raise InputError(f"{recorder.path}: {recorder.state.trouble}")

@@ -33,7 +33,7 @@ from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
 from app.sources.opening import open_source
-from app.sources.replay import Replay
+from app.sources.source import Source
 from app.tracks import Reestimation, Track
 from app.warm import warm_up
 
@@ -76,7 +76,7 @@ def walk(options: Options, tell: Callable[[str], None]) -> None:
 class Viewer:
     """One walk being watched."""
 
-    def __init__(self, options: Options, source: Replay) -> None:
+    def __init__(self, options: Options, source: Source) -> None:
         self._options = options
         self._source = source
         settings = source.settings or options.settings
@@ -90,7 +90,7 @@ class Viewer:
         self._fresh = asyncio.Event()  # there is something that no frame has shown
         # two for a search, one so that a slider never waits for it
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
-        self._status = m.Status(source.info, m.Link.WAITING, replay=True, profiles=profiles.names())
+        self._status = m.Status(source.info, source.link, profiles=profiles.names())
         self._message_until = 0.0
         self._last_sample_s = time.monotonic()
         self._sweeping: asyncio.Task[None] | None = None
@@ -108,6 +108,7 @@ class Viewer:
         with contextlib.ExitStack() as closing:
             closing.callback(self._workers.shutdown, wait=False, cancel_futures=True)
             closing.callback(self._record, False)
+            closing.callback(self._source.close)
             if self._options.record is not None:
                 self._record(True)
             scene = Scene(submit)
@@ -233,7 +234,7 @@ class Viewer:
             self._recorder = None
         if on and self._recorder is None:
             folder = self._options.record or self._options.recordings
-            made_by = self._source.recording.spec
+            made_by = self._source.made_by
             options = self._options
             self._recorder = Recorder(folder, options.profile, options.source, self._source.info, made_by)
             self._recorder.start(self._start())
@@ -351,23 +352,19 @@ class Viewer:
         now = time.monotonic()
         if self._message_until and now > self._message_until:
             self._say("")
-        link = self._link()
+        link = self._source.link
         return replace(
             self._status,
+            source=self._source.info,
             link=link,
-            stale_s=max(0.0, now - self._last_sample_s) if link is m.Link.LIVE else 0.0,
+            detail=self._source.detail,
+            replay=self._source.replay,
+            stale_s=now - self._last_sample_s if link in (m.Link.LIVE, m.Link.LOST) else 0.0,
             speed=self._source.speed,
             loop=self._source.loop,
             position_s=self._source.position_s,
             recording=self._recorder.state if self._recorder else self._status.recording,
         )
-
-    def _link(self) -> m.Link:
-        if not self._session.stores:
-            return m.Link.WAITING
-        if self._source.paused:
-            return m.Link.PAUSED
-        return m.Link.ENDED if self._source.ended else m.Link.LIVE
 
     def _say(self, message: str) -> None:
         self._status = replace(self._status, message=message)
@@ -375,7 +372,7 @@ class Viewer:
 
     def _health(self) -> dict[str, object]:
         """For /healthz; read on the door's thread, so only what is one read."""
-        return {"link": self._link().value, "taken": self._session.number}
+        return {"link": self._source.link.value, "taken": self._session.number}
 
 
 def reestimated(job: Reestimation) -> Track:

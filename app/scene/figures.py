@@ -33,7 +33,8 @@ def header(status: Status) -> str:
     link = f'<span class="ss-link ss-{status.link.value}">{LINKS[status.link]}</span>'
     age = words.number(status.stale_s, 1)
     stale = f'<div class="ss-stale">STALE <b>{age} s</b></div>' if is_stale(status) else ""
-    return f'<div class="ss-head"><span class="ss-source">{name}</span>{link}</div>{stale}'
+    detail = f'<div class="ss-note">{words.plain(status.detail)}</div>' if status.detail else ""
+    return f'<div class="ss-head"><span class="ss-source">{name}</span>{link}</div>{detail}{stale}'
 
 
 def message(snapshot: Snapshot, status: Status) -> str:

@@ -1,4 +1,4 @@
-"""Edge: from a SPEC to a source: a file or a simulator, and the truth where one is known."""
+"""Edge: from a SPEC to a source: a file, a simulator (and its truth), or a live link."""
 
 from __future__ import annotations
 
@@ -11,29 +11,42 @@ from app.simulate.gestures import make_gestures
 from app.simulate.walk import make_walk
 from app.sources.files import load
 from app.sources.replay import Replay
-from app.sources.spec import Spec, parse_spec
+from app.sources.source import Source
+from app.sources.spec import LIVE, Spec, parse_spec
 
 _log = logging.getLogger(__name__)
 
 _SAME = 1e-6  # m/s², rad/s: another machine's sines differ in the last digits
 
 
-def open_source(spec_text: str, *, finish: bool = False, changes: bool = True) -> Replay:
+def open_source(spec_text: str, *, finish: bool = False, changes: bool = True) -> Source:
     """The source a SPEC names, at the pace it asks for; ``InputError`` if there is none.
 
     ``finish``: the source ends after the last sample instead of waiting for a seek. ``changes``: a
     recording of ours repeats the changes made to its walk, if the SPEC does not say otherwise.
     """
     spec = parse_spec(spec_text)
+    if spec.kind in LIVE:
+        return open_live(spec)
     recording, truth = open_recording(spec)
     changes = changes and spec.changes
     return Replay(recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes, truth=truth)
+
+
+def open_live(spec: Spec) -> Source:
+    """The live source of each kind."""
+    raise InputError(
+        f"{spec.kind}:{spec.target}: {spec.kind}: sources are not in this version, "
+        "expected a recording or sim:walk"
+    )
 
 
 def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:
     """All samples of a file or of a simulated walk, and the simulator's truth if it made them."""
     if spec.kind == "sim":
         return _simulated(spec)
+    if spec.kind in LIVE:
+        raise InputError(f"{spec.kind}:{spec.target}: a live source, expected a recording or sim:walk")
     recording = load(spec.target, spec.options)
     return recording, _truth_of(recording)
 

@@ -19,6 +19,7 @@ from app.motion import (
     DropCandidate,
     InputError,
     Journal,
+    Link,
     Loop,
     Order,
     Pause,
@@ -26,7 +27,6 @@ from app.motion import (
     ReplaceCandidate,
     ReplayCommand,
     RestartHere,
-    Sample,
     Seek,
     SetApplyAtOnce,
     SourceInfo,
@@ -35,6 +35,7 @@ from app.motion import (
     Truth,
 )
 from app.settings import Settings
+from app.sources.source import Item
 from app.sources.spec import FASTEST, SLOWEST
 from app.sources.timeline import Timeline
 
@@ -89,6 +90,9 @@ class Replay:
         clock: Clock | None = None,
     ) -> None:
         self.recording = recording
+        self.replay = True
+        self.detail = ""
+        self.made_by = recording.spec
         self.info = source_info(recording, truth)
         self.speed = _checked_speed(speed)
         self.loop = loop
@@ -110,6 +114,15 @@ class Replay:
     def settings(self) -> Settings | None:
         """What the recorded walk began with, if it is to be repeated with its changes."""
         return self._journal.settings if self._journal else None
+
+    @property
+    def link(self) -> Link:
+        """Whether it plays."""
+        if self._next == 0:
+            return Link.WAITING
+        if self.paused:
+            return Link.PAUSED
+        return Link.ENDED if self.ended else Link.LIVE
 
     @property
     def duration_s(self) -> float:
@@ -139,10 +152,13 @@ class Replay:
                 self.loop = on
         self._news.set()
 
-    def __aiter__(self) -> AsyncIterator[Sample | Order | RestartHere]:
+    def __aiter__(self) -> AsyncIterator[Item]:
         return self._play()
 
-    async def _play(self) -> AsyncIterator[Sample | Order | RestartHere]:
+    def close(self) -> None:
+        """Nothing is held open."""
+
+    async def _play(self) -> AsyncIterator[Item]:
         for order in opening_orders(self._journal, anew=False):
             yield order
         self._move_anchor(self._playhead_ns())

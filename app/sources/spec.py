@@ -1,4 +1,4 @@
-"""Edge: SPEC, where samples come from: ``PATH``, ``replay:PATH?speed=2``, ``sim:walk?path=oval``."""
+"""Edge: SPEC, where samples come from: ``PATH``, ``replay:PATH?speed=2``, ``sim:walk``, ``serial:PORT``."""
 
 from __future__ import annotations
 
@@ -10,11 +10,12 @@ from urllib.parse import unquote
 from app.formats.options import KEYS
 from app.motion import InputError
 
-KINDS = ("replay", "sim", "serial", "ws", "udp")
+LIVE = ("serial", "ws", "udp")
+KINDS = ("replay", "sim", *LIVE)
 SLOWEST, FASTEST = 0.1, 8.0
 
 _PACE = ("speed", "loop", "changes")
-_LATER = ("serial", "ws", "udp")
+_EXPECTED = {"replay": "path", "sim": "simulator", "serial": "port", "ws": "port", "udp": "port"}
 _TRUE = {
     "1": True,
     "true": True,
@@ -29,9 +30,9 @@ _TRUE = {
 
 @dataclass(frozen=True)
 class Spec:
-    """A parsed SPEC: ``kind`` replay or sim, ``target`` the path or the simulator's name.
+    """A parsed SPEC: ``kind``, and ``target``: the path, the simulator's name or the port.
 
-    ``options`` are what the file does not say, or the simulator's own.
+    ``options`` are what the file does not say, or the simulator's or the link's own.
     """
 
     kind: str
@@ -45,16 +46,12 @@ class Spec:
 def parse_spec(text: str) -> Spec:
     """The SPEC as typed; ``InputError`` names what is wrong: form, option or number."""
     kind, rest = _kind(text)
-    if kind in _LATER:
-        raise InputError(
-            f"{text!r}: {kind}: sources are not in this version, expected a recording or sim:walk"
-        )
     target, _, query = rest.partition("?")
     if not target:
-        raise InputError(
-            f"{text!r}: no {'path' if kind == 'replay' else 'simulator'}, expected e.g. sim:walk"
-        )
+        raise InputError(f"{text!r}: no {_EXPECTED[kind]}, expected e.g. sim:walk")
     options = _options(text, query)
+    if kind in LIVE:
+        return Spec(kind, unquote(target), options)
     pace = {key: options.pop(key) for key in _PACE if key in options}
     if kind == "replay":
         _check_keys(text, options)

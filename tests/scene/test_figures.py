@@ -52,6 +52,12 @@ def test_stale_is_said_after_half_a_second() -> None:
     assert "STALE" not in figures.header(fakes.status(stale_s=9.0, link=Link.ENDED))
 
 
+def test_the_state_of_the_link_is_told_in_words() -> None:
+    shown = figures.header(fakes.status(link=Link.LOST, detail="COM3 <gone>: trying again in 2 s"))
+    assert "connection lost" in shown
+    assert "COM3 &lt;gone&gt;: trying again in 2 s" in shown
+
+
 def test_a_pose_that_is_no_number_is_said() -> None:
     snapshot = fakes.snapshot(5.0)
     lost = snapshot.main.feet[0]._replace(position_n=(math.nan, 0.0, 0.0))

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.motion import InputError
-from app.sources.spec import Spec, parse_spec
+from app.sources.spec import KINDS, Spec, parse_spec
 
 
 @pytest.mark.parametrize(
@@ -25,6 +25,11 @@ from app.sources.spec import Spec, parse_spec
             "sim:walk?path=oval&noise=2&speed=8",
             Spec("sim", "walk", {"path": "oval", "noise": "2"}, speed=8.0),
         ),
+        (
+            "serial:/dev/ttyUSB0?device=auto&baud=115200",
+            Spec("serial", "/dev/ttyUSB0", {"device": "auto", "baud": "115200"}),
+        ),
+        ("udp:9000", Spec("udp", "9000")),
     ],
 )
 def test_forms(text: str, spec: Spec) -> None:
@@ -46,9 +51,8 @@ def test_forms(text: str, spec: Spec) -> None:
         ("w.csv?speed=-1", "speed='-1': expected"),
         ("w.csv?speed=nan", "speed='nan': expected"),
         ("w.csv?loop=maybe", "loop='maybe': expected 1 or 0"),
-        ("serial:/dev/ttyUSB0?device=auto", "not in this version"),
-        ("ws:8765", "not in this version"),
-        ("udp:9000", "not in this version"),
+        ("serial:", "no port"),
+        ("serial:/dev/ttyUSB0?device", "expected key=value"),
     ],
 )
 def test_what_is_wrong_is_named_in_one_line(text: str, words: str) -> None:
@@ -64,5 +68,5 @@ def test_any_text_is_a_spec_or_an_input_error(text: str) -> None:
     except InputError as error:
         assert "\n" not in str(error)
         return
-    assert spec.kind in ("replay", "sim")
+    assert spec.kind in KINDS
     assert spec.target

@@ -1,0 +1,80 @@
+"""Edge: what every source of samples offers, live or replayed, and the honest answers of a live one."""
+
+from __future__ import annotations
+
+from collections.abc import AsyncIterator
+from typing import Protocol
+
+from app.motion import InputError, Link, Order, ReplayCommand, RestartHere, Sample, SourceInfo
+from app.settings import Settings
+
+#: What a source yields. Only a replay yields orders (those recorded) and ``RestartHere``.
+Item = Sample | Order | RestartHere
+
+
+class Source(Protocol):
+    """Iterate it once, on the loop that also calls everything else here. Nothing here ever waits.
+
+    Bad commands raise ``InputError``. ``info`` may change while it runs: a device is identified, another
+    sensor appears. A live source reads on while nobody iterates, so that no sample waits for a reader.
+    """
+
+    @property
+    def info(self) -> SourceInfo:
+        """What is known of it now."""
+
+    @property
+    def link(self) -> Link:
+        """What it is doing."""
+
+    @property
+    def detail(self) -> str:
+        """One line for the person on the link, or nothing: ``COM3 is gone: trying again in 2 s``."""
+
+    @property
+    def replay(self) -> bool:
+        """Whether ``control`` does anything: False for a live source."""
+
+    @property
+    def speed(self) -> float:
+        """Times the recorded pace."""
+
+    @property
+    def loop(self) -> bool:
+        """Whether it begins anew at its end."""
+
+    @property
+    def position_s(self) -> float:
+        """Where a replay is, in seconds from its first sample."""
+
+    @property
+    def settings(self) -> Settings | None:
+        """What a recorded walk began with, if it is to be repeated with its changes."""
+
+    @property
+    def made_by(self) -> str | None:
+        """The SPEC of the simulator behind it, for a recording of it."""
+
+    def control(self, command: ReplayCommand) -> None:
+        """Pause, step, seek, speed, loop."""
+
+    def __aiter__(self) -> AsyncIterator[Item]:
+        """The samples, as they come."""
+
+    def close(self) -> None:
+        """Let go of ports and sockets; may be called before the first sample, and twice."""
+
+
+class Live:
+    """What is the same for all live sources: they cannot be paused, and know no truth."""
+
+    replay = False
+    speed = 1.0
+    loop = False
+    position_s = 0.0
+    settings: Settings | None = None
+    made_by: str | None = None
+
+    def control(self, command: ReplayCommand) -> None:
+        """Refused: what a sensor measures is over when it is over."""
+        raise InputError(f"{type(command).__name__.lower()}: only a replay can, this is a live sensor")
