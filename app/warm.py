@@ -10,7 +10,7 @@ from app.blocks import Blocks
 from app.estimator.corrections import EVENT_WIDTH, correct
 from app.estimator.methods import METHODS
 from app.estimator.smoother import smooth
-from app.estimator.strides import contact_at, lift_above_line
+from app.estimator.strides import Contact, lift_above_line, stride_to
 from app.estimator.sweep import sweep
 from app.estimator.tracker import Tracker
 from app.motion import ROW_WIDTH, SAMPLE_WIDTH
@@ -44,7 +44,7 @@ def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
 
     def corrections() -> None:
         correct(rows, 0, samples.table(0, 1), event)
-        contact_at(rows[0], 0.0)
+        stride_to(Contact(0.0, (0.0, 0.0, 0.0), 0.0), rows, event, 1, 0.0)
         lift_above_line(rows, event)
 
     def kalman() -> None:

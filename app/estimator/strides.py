@@ -5,12 +5,15 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
+import numpy as np
+
 from app.compiled import kernel
 from app.estimator.corrections import Event
 from app.motion import Floats, Stride, Vector
 from app.rotation import yaw_of
 
 _START, _END = int(Event.START), int(Event.END)
+_LIFT_NS, _SWING_S = int(Event.LIFT_NS), int(Event.SWING_S)
 
 
 class Contact(NamedTuple):
@@ -21,12 +24,6 @@ class Contact(NamedTuple):
     heading_rad: float
 
 
-def contact_at(row: Floats, t_s: float) -> Contact:
-    """The footprint at a row [12]."""
-    north, east, down, *_ = row.tolist()
-    return Contact(t_s, (north, east, down), yaw_of(tuple(row[6:10].tolist())))
-
-
 def turned(contact: Contact, angle_rad: float) -> Contact:
     """The footprint after the whole walk was turned clockwise, seen from above, about its start."""
     c, s = math.cos(angle_rad), math.sin(angle_rad)
@@ -35,27 +32,45 @@ def turned(contact: Contact, angle_rad: float) -> Contact:
     return Contact(contact.t_s, position_n, contact.heading_rad + angle_rad)
 
 
-def stride_between(before: Contact, now: Contact, event: Floats, number: int, lift_m: float) -> Stride:
-    """The stride from one footprint to the next; ``event`` is the zero-velocity update that ended it.
+def stride_to(before: Contact, rows: Floats, event: Floats, number: int, risen_m: float) -> Stride:
+    """The stride from the footprint ``before`` to the contact, the last of ``rows`` [k, 12].
 
-    Where no contact precedes it in its segment, ``before`` is the lift itself.
+    ``event`` is the zero-velocity update that ended it. ``rows`` begin at the lift, or where their block
+    does; ``risen_m`` is the lift of the rows before them. Where no contact precedes it in its segment,
+    ``before`` is the lift itself.
     """
-    swing_s = float(event[Event.SWING_S])
-    north, east = now.position_n[0] - before.position_n[0], now.position_n[1] - before.position_n[1]
-    duration_s = now.t_s - before.t_s
-    return Stride(
-        number=number,
-        start_s=before.t_s,
-        end_s=now.t_s,
-        length_m=math.hypot(north, east),
-        duration_s=duration_s,
-        swing_s=swing_s,
-        stance_s=max(0.0, duration_s - swing_s),
-        lift_m=lift_m,
-        turn_rad=math.remainder(before.heading_rad - now.heading_rad, math.tau),
-        end_n=now.position_n,
-        heading_rad=now.heading_rad,
+    return Stride(number, *figures(before.t_s, before.position_n, before.heading_rad, rows, event, risen_m))
+
+
+@kernel
+def figures(
+    start_s: float, start_n: Vector, start_rad: float, rows: Floats, event: Floats, risen_m: float
+) -> tuple[float, float, float, float, float, float, float, float, Vector, float]:
+    """A stride's figures, in the order of ``Stride``, without its number."""
+    row = rows[-1]
+    end_n = (row[0], row[1], row[2])
+    heading_rad = yaw_of((row[6], row[7], row[8], row[9]))
+    swing_s = event[_SWING_S]
+    end_s = event[_LIFT_NS] * 1e-9 + swing_s
+    duration_s = end_s - start_s
+    return (
+        start_s,
+        end_s,
+        math.hypot(end_n[0] - start_n[0], end_n[1] - start_n[1]),
+        duration_s,
+        swing_s,
+        max(0.0, duration_s - swing_s),
+        max(risen_m, lift_above_line(rows, event)),
+        wrapped(start_rad - heading_rad),
+        end_n,
+        heading_rad,
     )
+
+
+@kernel
+def wrapped(angle_rad: float) -> float:
+    """The same angle between −π and π."""
+    return angle_rad - math.tau * float(np.rint(angle_rad / math.tau))
 
 
 @kernel

@@ -11,8 +11,9 @@ from app.estimator import state as s
 from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
-from app.estimator.strides import Contact, contact_at, lift_above_line, stride_between, turned
+from app.estimator.strides import Contact, lift_above_line, stride_to, turned
 from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples, Stride, Trust
+from app.rotation import yaw_of
 from app.settings import Settings
 
 
@@ -109,12 +110,12 @@ class Tracker:
             self._contact = None
 
     def _add_stride(self, event: Floats) -> None:
-        _, lift_row, contact_row, _, lift_ns, swing_s, *_ = event.tolist()
-        lift, contact, lift_s = max(int(lift_row), self.rows.start), int(contact_row), lift_ns * 1e-9
-        lifts = [lift_above_line(rows, event) for rows, _ in self.rows.pieces(lift, contact + 1)]
-        before = self._contact or self._lifted(event, lift, lift_s)
-        self._contact = contact_at(self._row(contact), lift_s + swing_s)
-        stride = stride_between(before, self._contact, event, self.stride_count + 1, max(lifts))
+        lift = max(int(event[Event.LIFT_ROW]), self.rows.start)
+        *earlier, (rows, _) = self.rows.pieces(lift, int(event[Event.CONTACT_ROW]) + 1)
+        risen_m = max((lift_above_line(piece, event) for piece, _ in earlier), default=0.0)
+        before = self._contact or self._lifted(event, lift)
+        stride = stride_to(before, rows, event, self.stride_count + 1, risen_m)
+        self._contact = Contact(stride.end_s, stride.end_n, stride.heading_rad)
         self.strides.append(stride)
         self.distance_m += stride.length_m
 
@@ -132,10 +133,11 @@ class Tracker:
                 event[Event.END + axis] = self._row(int(event[Event.CONTACT_ROW]))[axis]
             self._add_stride(event)
 
-    def _lifted(self, event: Floats, lift: int, lift_s: float) -> Contact:
+    def _lifted(self, event: Floats, lift: int) -> Contact:
         """Where a segment's first swing began."""
+        _, _, _, _, lift_ns, *_ = event.tolist()
         north, east, down = event[Event.START : Event.START + 3].tolist()  # the row at the lift may be gone
-        return contact_at(self._row(lift), lift_s)._replace(position_n=(north, east, down))
+        return Contact(lift_ns * 1e-9, (north, east, down), yaw_of(tuple(self._row(lift)[6:10].tolist())))
 
     def _row(self, number: int) -> Floats:
         block, place = self.rows.block(number)
