@@ -13,56 +13,73 @@ from app.motion import Floats, Trail, TrailPiece
 
 Segments = NDArray[np.float32]  # [k, 2, 3]
 
-#: Segments in a piece, and how far apart points are: fresh, older, old. Metres.
-PIECE = 512
-STEPS_M = (0.02, 0.10, 0.50)
+#: Segments in a piece, and how far from the path a line may lie: fresh, older, old. Metres.
+PIECE = 256
+TOLERANCES_M = (0.005, 0.03, 0.15)
 #: A level with more pieces than this merges its oldest MERGED into one of the next level.
 PIECES = 8
 MERGED = 4
+#: Points nearer than this to the one before are left out. Metres.
+APART_M = 0.005
+#: Points that one straight segment stands for, at most.
+SLEEVE = 32
 
 EMPTY: Segments = np.empty((0, 2, 3), np.float32)
 
 
 @kernel
-def thin_rows(rows: Floats, last: Floats, step_m: float, kept: Floats) -> int:
-    """Points at least ``step_m`` apart: rows [k, ≥3] → ``kept`` [k, 3], from ``last`` [3] on; how many."""
-    count = 0
-    for i in range(rows.shape[0]):
-        x, y, z = rows[i, 0] - last[0], rows[i, 1] - last[1], rows[i, 2] - last[2]
-        if x * x + y * y + z * z >= step_m * step_m:
-            for axis in range(3):
-                last[axis] = rows[i, axis]
-                kept[count, axis] = rows[i, axis]
-            count += 1
-    return count
+def straight(sleeve: Floats, waiting: int, x: float, y: float, z: float, tolerance_m: float) -> bool:
+    """Whether the points that wait lie within the tolerance of the segment ``sleeve[0]`` – (x, y, z)."""
+    ax, ay, az = x - sleeve[0, 0], y - sleeve[0, 1], z - sleeve[0, 2]
+    squared = max(ax * ax + ay * ay + az * az, 1e-12)
+    for i in range(1, waiting + 1):
+        bx, by, bz = sleeve[i, 0] - sleeve[0, 0], sleeve[i, 1] - sleeve[0, 1], sleeve[i, 2] - sleeve[0, 2]
+        share = min(1.0, max(0.0, (ax * bx + ay * by + az * bz) / squared))
+        dx, dy, dz = bx - share * ax, by - share * ay, bz - share * az
+        if dx * dx + dy * dy + dz * dz > tolerance_m * tolerance_m:
+            return False
+    return True
 
 
 @kernel
-def thin_segments(segments: Any, step_m: float, kept: Any) -> int:
-    """Join segments [k, 2, 3] that hang together into ones of at least ``step_m``; how many."""
+def thin(
+    points: Any, sleeve: Floats, waiting: int, tolerance_m: float, apart_m: float, kept: Floats
+) -> tuple[int, int]:
+    """The corners of a path: points [k, ≥3] → ``kept`` [k, 3]; how many, and how many now wait.
+
+    ``sleeve`` [SLEEVE + 1, 3] is the last corner and the ``waiting`` points after it, all near one line.
+    """
     count = 0
-    start = 0
-    for i in range(segments.shape[0]):
-        dx = segments[i, 1, 0] - segments[start, 0, 0]
-        dy = segments[i, 1, 1] - segments[start, 0, 1]
-        dz = segments[i, 1, 2] - segments[start, 0, 2]
-        broken = i + 1 == segments.shape[0]
-        if not broken:
-            for axis in range(3):
-                broken = broken or segments[i, 1, axis] != segments[i + 1, 0, axis]
-        if broken or dx * dx + dy * dy + dz * dz >= step_m * step_m:
-            for axis in range(3):
-                kept[count, 0, axis] = segments[start, 0, axis]
-                kept[count, 1, axis] = segments[i, 1, axis]
+    for i in range(points.shape[0]):
+        x, y, z = float(points[i, 0]), float(points[i, 1]), float(points[i, 2])
+        dx, dy, dz = x - sleeve[waiting, 0], y - sleeve[waiting, 1], z - sleeve[waiting, 2]
+        if dx * dx + dy * dy + dz * dz < apart_m * apart_m:
+            continue
+        if waiting == SLEEVE or not straight(sleeve, waiting, x, y, z, tolerance_m):
+            kept[count] = sleeve[waiting]
+            sleeve[0] = sleeve[waiting]
             count += 1
-            start = i + 1
-    return count
+            waiting = 0
+        waiting += 1
+        sleeve[waiting, 0], sleeve[waiting, 1], sleeve[waiting, 2] = x, y, z
+    return count, waiting
 
 
-def coarser(segments: Segments, step_m: float) -> Segments:
-    """The same path with longer segments; ends and breaks stay."""
-    kept = np.empty_like(segments)
-    return kept[: thin_segments(segments, step_m, kept)].copy()
+def coarser(segments: Segments, tolerance_m: float) -> Segments:
+    """The same path with fewer segments; ends and breaks stay."""
+    if len(segments) < 2:
+        return segments.copy()
+    breaks = np.flatnonzero((segments[1:, 0] != segments[:-1, 1]).any(axis=1)) + 1
+    return np.concatenate([_straightened(chain, tolerance_m) for chain in np.split(segments, breaks)])
+
+
+def _straightened(chain: Segments, tolerance_m: float) -> Segments:
+    """Segments that hang together, as fewer."""
+    sleeve, kept = np.empty((SLEEVE + 1, 3)), np.empty((len(chain) + 2, 3))
+    sleeve[0] = kept[0] = chain[0, 0]
+    count, _ = thin(chain[:, 1], sleeve, 0, tolerance_m, 0.0, kept[1:])
+    kept[count + 1] = chain[-1, 1]
+    return segments_of(kept[: count + 2])
 
 
 def segments_of(points: Floats) -> Segments:
@@ -84,30 +101,38 @@ class TrailBuilder:
         """``name`` makes the keys of its pieces unique."""
         self._name = name
         self._made = 0
-        self._levels: list[list[TrailPiece]] = [[] for _ in STEPS_M]
+        self._taken = 0  # rows
+        self._levels: list[list[TrailPiece]] = [[] for _ in TOLERANCES_M]
+        self._pieces: tuple[TrailPiece, ...] = ()  # all settled ones, oldest first
         self._growing = np.empty((PIECE, 2, 3), np.float32)
         self._count = 0
         self._shown: Segments = EMPTY
-        self._last: Floats | None = None
+        self._sleeve = np.zeros((SLEEVE + 1, 3))  # the last corner, and the points after it
+        self._waiting: int | None = None  # how many; None while the pen is up
 
     def add(self, rows: Floats) -> None:
         """More settled rows [k, ≥3], contiguous in time with those before."""
         if not len(rows):
             return
-        if self._last is None:
-            self._last = rows[0, :3].copy()
+        self._taken += len(rows)
+        if self._waiting is None:
+            self._sleeve[0], self._waiting = rows[0, :3], 0
         kept = np.empty((len(rows) + 1, 3))
-        kept[0] = self._last
-        count = thin_rows(rows, self._last, STEPS_M[0], kept[1:])
-        self._append(segments_of(kept[: count + 1]))
+        kept[0] = self._sleeve[0]
+        count, waiting = thin(rows, self._sleeve, self._waiting, TOLERANCES_M[0], APART_M, kept[1:])
+        if count or waiting != self._waiting:
+            self._shown, self._waiting = EMPTY, waiting
+            self._append(segments_of(kept[: count + 1]))
 
     def lift_pen(self) -> None:
         """A new segment of time: the next row is not joined to the last."""
-        self._last = None
+        self._append(self._open)
+        self._waiting = None
 
     def seed(self, pieces: tuple[TrailPiece, ...]) -> None:
         """Put older pieces, of another builder, in front."""
         self._levels[-1] = [*pieces, *self._levels[-1]]
+        self._tell()
 
     def turn(self, name: str, angle_rad: float) -> None:
         """Turn all of it clockwise, seen from above, about the start; its pieces get new keys."""
@@ -117,29 +142,29 @@ class TrailBuilder:
             for level in self._levels
         ]
         self._growing, self._shown = _turned(self._growing, angle_rad), EMPTY
-        if self._last is not None:
-            self._last = _turned(self._last, angle_rad)
+        self._sleeve = _turned(self._sleeve, angle_rad)
+        self._tell()
 
     def finished(self) -> tuple[TrailPiece, ...]:
         """All of it as settled pieces, the growing one too."""
-        growing = TrailPiece(
-            f"{self._name}.growing{self._made}.{self._count}", self._growing[: self._count].copy()
-        )
-        return (*self.pieces, growing)
-
-    @property
-    def pieces(self) -> tuple[TrailPiece, ...]:
-        """All settled pieces, oldest first."""
-        return tuple(piece for level in reversed(self._levels) for piece in level)
+        return (*self._pieces, TrailPiece(f"{self._name}.growing{self._taken}", self._all_growing()))
 
     def trail(self, provisional: Floats) -> Trail:
         """What there is to draw; ``provisional`` [k, ≥3] are the rows after the settled ones."""
-        if len(self._shown) != self._count:
-            self._shown = self._growing[: self._count].copy()
+        if self._shown is EMPTY:
+            self._shown = self._all_growing()
         tail = provisional[:, :3]
-        if self._last is not None:
-            tail = np.concatenate([self._last[None], tail])
-        return Trail(self.pieces, self._shown, segments_of(tail))
+        if self._waiting is not None:
+            tail = np.concatenate([self._sleeve[self._waiting][None], tail])
+        return Trail(self._pieces, self._shown, segments_of(tail))
+
+    @property
+    def _open(self) -> Segments:
+        """From the last corner straight on to where the path is now: no segment yet, but drawn."""
+        return segments_of(self._sleeve[[0, self._waiting]]) if self._waiting else EMPTY
+
+    def _all_growing(self) -> Segments:
+        return np.concatenate([self._growing[: self._count], self._open])
 
     def _append(self, segments: Segments) -> None:
         while len(segments):
@@ -150,11 +175,14 @@ class TrailBuilder:
             if self._count == PIECE:
                 self._put(0, self._growing.copy())
                 self._count = 0
-                self._shown = EMPTY
+                self._tell()
 
     def _put(self, level: int, segments: Segments) -> None:
         self._made += 1
         self._levels[level].append(TrailPiece(f"{self._name}.{self._made}", segments))
-        if level + 1 < len(STEPS_M) and len(self._levels[level]) > PIECES:
+        if level + 1 < len(TOLERANCES_M) and len(self._levels[level]) > PIECES:
             merged = [self._levels[level].pop(0).segments for _ in range(MERGED)]
-            self._put(level + 1, coarser(np.concatenate(merged), STEPS_M[level + 1]))
+            self._put(level + 1, coarser(np.concatenate(merged), TOLERANCES_M[level + 1]))
+
+    def _tell(self) -> None:
+        self._pieces = tuple(piece for level in reversed(self._levels) for piece in level)
