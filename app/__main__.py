@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.commands import export, gestures, info, process, record, recover, walk
+from app.commands import export, gestures, info, process, record, recover, study, walk
 from app.commands.shared import Parser
 from app.motion import InputError
 
@@ -20,6 +20,7 @@ COMMANDS = {
     "export": export,
     "process": process,
     "gestures": gestures,
+    "study": study,
 }
 
 

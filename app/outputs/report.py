@@ -1,0 +1,136 @@
+"""Edge: the studies as one HTML page that needs nothing else: no script, no network."""
+
+from __future__ import annotations
+
+import json
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from html import escape
+
+from app.outputs.chart import chart
+from app.studies.words import Row, Study, Table, Verdict
+
+_STYLE = """
+:root{color-scheme:light dark;--ink:#1d2733;--soft:#5a6675;--paper:#fff;--line:#dde3ea;--card:#f6f8fa;
+--c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#a8518a;--c4:#b07d00;--c5:#3a8fc4;--c6:#4a4a4a}
+@media(prefers-color-scheme:dark){:root{--ink:#e4e9ef;--soft:#9aa7b5;--paper:#14191f;--line:#303a45;
+--card:#1b222a;--c0:#56b4e9;--c1:#f0904a;--c2:#2fc79b;--c3:#dd95c0;--c4:#e6b93c;--c5:#8fcdf5;--c6:#c4c4c4}}
+body{margin:0 auto;max-width:76rem;padding:1.5rem;background:var(--paper);color:var(--ink);
+font:15px/1.5 system-ui,sans-serif}
+h1{font-size:1.5rem}h2{font-size:1.2rem;margin-top:2.5rem;border-top:1px solid var(--line);padding-top:1rem}
+p,dl{max-width:60rem}a{color:var(--c0)}
+table{border-collapse:collapse;margin:1rem 0;font-variant-numeric:tabular-nums}
+th,td{padding:.25rem .7rem;text-align:left;border-bottom:1px solid var(--line);vertical-align:top}
+th{color:var(--soft);font-weight:600}td.n{text-align:right;white-space:nowrap}
+.wide{overflow-x:auto}.why{color:var(--soft);max-width:30rem;font-size:.9em}
+.v{white-space:nowrap}.v::before{margin-right:.4em}
+.reproduced::before{content:"✓";color:var(--c2)}.close::before{content:"≈";color:var(--c4)}
+.not-reproduced::before{content:"✗";color:var(--c1)}.no-data::before{content:"–";color:var(--soft)}
+.plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,30rem),1fr));gap:1.2rem}
+figure{margin:0;padding:.8rem;background:var(--card);border:1px solid var(--line);border-radius:.5rem}
+figcaption{font-weight:600}.note{color:var(--soft);margin:.3rem 0 0;font-size:.9em}
+.legend{list-style:none;display:flex;flex-wrap:wrap;gap:.1rem 1rem;padding:0;margin:.3rem 0;font-size:.85em}
+.legend svg{margin-right:.4em;vertical-align:middle}
+svg text{fill:var(--soft);font-size:12px}.mid{text-anchor:middle}.end{text-anchor:end}
+svg .axis{fill:var(--ink);font-size:13px}.grid{stroke:var(--line);fill:none}
+.line{fill:none;stroke-width:1.8;stroke-linejoin:round}.cross{stroke-width:1.8}.band{opacity:.2;stroke:none}
+summary{cursor:pointer;color:var(--soft)}code{font-size:.9em}
+"""
+#: Curves differ by their dashes too, so that nobody needs to tell colours apart.
+_DASHES = ("none", "7 3", "2 3", "9 3 2 3", "4 2", "1 3 6 3", "12 4")
+_COLOURS = "".join(
+    f".c{i} path,.c{i} circle{{fill:var(--c{i});stroke:var(--c{i})}}"
+    f".c{i} .line{{fill:none;stroke-dasharray:{dash}}}"
+    for i, dash in enumerate(_DASHES)
+)
+
+
+def report(studies: Sequence[Study], about: Mapping[str, str]) -> str:
+    """The page. ``about`` are words and figures of the run itself: version, seconds, machine."""
+    rows = [row for study in studies for row in study.rows]
+    body = "".join(_section(study) for study in studies)
+    return (
+        "<!doctype html><html lang=en><meta charset=utf-8>"
+        '<meta name=viewport content="width=device-width,initial-scale=1">'
+        f"<title>Stridescope: the papers’ studies</title><style>{_STYLE}{_COLOURS}</style>"
+        f"<h1>The papers’ studies</h1><p>{escape(_in_words(rows))}</p>{_contents(studies)}{body}"
+        f"<h2>This run</h2>{_pairs(about)}</html>"
+    )
+
+
+def _in_words(rows: Sequence[Row]) -> str:
+    counts = Counter(row.verdict for row in rows)
+    told = ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
+    return (
+        f"{len(rows)} printed figures: {told}. Reproduced: equal to the printed digits, within the printed"
+        " bound, or within what chance allows. Close: not that, but near, and the reason is given. No data:"
+        " printed from measurements that were never published; ours is a simulation's, compared in shape."
+    )
+
+
+def _contents(studies: Sequence[Study]) -> str:
+    head = "".join(f"<th>{verdict}</th>" for verdict in Verdict)
+    lines = []
+    for study in studies:
+        counts = Counter(row.verdict for row in study.rows)
+        cells = "".join(f"<td class=n>{counts[verdict] or ''}</td>" for verdict in Verdict)
+        link = f'<a href="#{escape(study.name)}">{escape(study.name)}</a>'
+        lines.append(f"<tr><td>{link}</td><td>{escape(study.title)}</td>{cells}</tr>")
+    return f"<table><tr><th>study</th><th></th>{head}</tr>{''.join(lines)}</table>"
+
+
+def _section(study: Study) -> str:
+    plots = "".join(chart(plot) for plot in study.plots)
+    return (
+        f'<section id="{escape(study.name)}"><h2>{escape(study.title)}</h2><p>{escape(study.about)}</p>'
+        f"<div class=plots>{plots}</div>{''.join(_table(table) for table in study.tables)}"
+        f"{_rows(study.rows)}"
+        f"<details><summary>Configuration and seed</summary>{_pairs(study.config)}</details></section>"
+    )
+
+
+def _rows(rows: Sequence[Row]) -> str:
+    names = ("printed figure", "printed", "got", "", "verdict", "why, or what it took")
+    head = f"<tr>{''.join(f'<th>{name}</th>' for name in names)}</tr>"
+    lines = "".join(
+        f"<tr><td>{escape(row.item)}</td><td class=n>{escape(_minus(row.printed_as))}</td>"
+        f"<td class=n>{number(row.got)}</td><td>{escape(row.unit)}</td>"
+        f'<td class="v {row.verdict.replace(" ", "-")}">{row.verdict}</td>'
+        f"<td class=why>{escape(row.why or row.needs)}</td></tr>"
+        for row in rows
+    )
+    return f"<div class=wide><table>{head}{lines}</table></div>" if rows else ""
+
+
+def _table(table: Table) -> str:
+    head = "".join(f"<th>{escape(text)}</th>" for text in table.head)
+    lines = "".join(f"<tr>{''.join(_cell(value) for value in line)}</tr>" for line in table.lines)
+    return f"<h3>{escape(table.title)}</h3><div class=wide><table><tr>{head}</tr>{lines}</table></div>"
+
+
+def _cell(value: str | float) -> str:
+    return f"<td>{escape(value)}</td>" if isinstance(value, str) else f"<td class=n>{number(value)}</td>"
+
+
+def _pairs(pairs: Mapping[str, object]) -> str:
+    lines = "".join(
+        f"<tr><td><code>{escape(key)}</code></td><td>{escape(_text(value))}</td></tr>"
+        for key, value in pairs.items()
+    )
+    return f"<table>{lines}</table>"
+
+
+def _text(value: object) -> str:
+    return value if isinstance(value, str) else json.dumps(value, ensure_ascii=False, default=str)
+
+
+def number(value: float) -> str:
+    """Four digits, more where they stand before the point."""
+    return _minus(f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}")
+
+
+def _minus(text: str) -> str:
+    mantissa, e, exponent = text.partition("e")
+    if e:
+        return f"{mantissa} × 10^{int(exponent)}".replace("-", "−")
+    return text.replace("-", "−")

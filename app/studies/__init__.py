@@ -1,0 +1,1 @@
+"""Heart: the papers' tables and figures, made again."""

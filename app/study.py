@@ -1,0 +1,108 @@
+"""Shell: studies from their plan to the report: tasks to the workers, values to the conclusions."""
+
+from __future__ import annotations
+
+import json
+import platform
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from app import __version__
+from app.motion import InputError
+from app.outputs.report import number, report
+from app.studies.catalogue import STUDIES
+from app.studies.words import Row, Study
+from app.workers import Tell, run_all
+
+
+class Outcome(NamedTuple):
+    """What a run of some studies gave, and how long it took."""
+
+    studies: tuple[Study, ...]
+    seconds: float
+    where: str
+
+
+def names_of(name: str) -> tuple[str, ...]:
+    """The studies a name stands for; ``InputError`` if none."""
+    if name == "all":
+        return tuple(STUDIES)
+    if name not in STUDIES:
+        raise InputError(f"study {name}: expected all or one of {', '.join(STUDIES)}")
+    return (name,)
+
+
+def study(names: Sequence[str], jobs: int, cluster: str | None, tell: Tell) -> Outcome:
+    """Run these studies, their tasks all together."""
+    began = time.perf_counter()
+    plans = [(STUDIES[name], STUDIES[name].tasks(STUDIES[name].config)) for name in names]
+    done = run_all([task for _, tasks in plans for task in tasks], jobs, cluster, tell)
+    studies, first = [], 0
+    for experiment, tasks in plans:
+        studies.append(experiment.conclude(experiment.config, done[first : first + len(tasks)]))
+        first += len(tasks)
+    where = f"the Dask cluster at {cluster}" if cluster else f"{jobs} process{'es' if jobs > 1 else ''}"
+    return Outcome(tuple(studies), time.perf_counter() - began, where)
+
+
+def summary(outcome: Outcome) -> dict[str, object]:
+    """What ``study --json`` prints (contract.md)."""
+    return {
+        "studies": {s.name: {"title": s.title, "config": dict(s.config)} for s in outcome.studies},
+        "rows": [as_json(row) for s in outcome.studies for row in s.rows],
+        "seconds": outcome.seconds,
+    }
+
+
+def as_json(row: Row) -> dict[str, object]:
+    """One row; a figure that is not a number is null."""
+    got = row.got if np.isfinite(row.got) else None
+    return {
+        "study": row.study,
+        "item": row.item,
+        "printed": row.printed,
+        "printed_as": row.printed_as,
+        "got": got,
+        "unit": row.unit,
+        "verdict": str(row.verdict),
+        "why": row.why,
+        "needs": row.needs,
+    }
+
+
+def write(outcome: Outcome, folder: Path) -> list[Path]:
+    """The report and the rows into a folder."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        page, rows = folder / "report.html", folder / "rows.json"
+        page.write_text(report(outcome.studies, _about(outcome)), "utf-8")
+        rows.write_text(json.dumps(summary(outcome), indent=1, ensure_ascii=False) + "\n", "utf-8")
+    except OSError as error:
+        raise InputError(f"--out {folder}: {error.strerror}: expected a folder that can be written") from None
+    return [page, rows]
+
+
+def _about(outcome: Outcome) -> dict[str, str]:
+    return {
+        "stridescope": __version__,
+        "Python, numpy": f"{platform.python_version()}, {np.__version__}",
+        "took": f"{outcome.seconds:.1f} s in {outcome.where}",
+    }
+
+
+def lines(outcome: Outcome) -> list[str]:
+    """The rows for a person."""
+    text = []
+    for done in outcome.studies:
+        text.append(f"{done.name}: {done.title}")
+        for row in done.rows:
+            text.append(
+                f"  {row.verdict:<14} {row.item}: printed {row.printed_as}, got {number(row.got)} {row.unit}"
+            )
+            if row.why:
+                text.append(f"                 {row.why}")
+    return text

@@ -1,0 +1,113 @@
+"""Edge to other processes: where tasks run: in this one, on the cores of this machine, or on a Dask cluster.
+
+A task is seeded by itself and its value does not depend on where or when it ran, so a worker that dies
+costs time only: its tasks are done again.
+"""
+
+from __future__ import annotations
+
+import multiprocessing
+import os
+import time
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from typing import Any
+
+from app.motion import InputError
+from app.studies.words import Done, Task
+
+Tell = Callable[[int, int], None]
+"""(tasks done, of so many)."""
+#: A pool that loses a worker is made anew so often before it counts as a fault of the task.
+LIVES = 3
+
+
+def run_task(task: Task) -> Done:
+    """One task, timed."""
+    if task.timed:
+        task.run(*task.arguments)
+    began = time.perf_counter()
+    value = task.run(*task.arguments)
+    return Done(value, time.perf_counter() - began)
+
+
+def run_all(tasks: Sequence[Task], jobs: int, cluster: str | None, tell: Tell) -> list[Done]:
+    """All tasks, their values in the order asked; ``jobs`` processes, or a cluster's."""
+    if cluster is not None:
+        return _on_cluster(tasks, cluster, tell)
+    if jobs == 1 or len(tasks) < 2:
+        return _here(tasks, tell)
+    return _in_processes(tasks, jobs, tell)
+
+
+def cores() -> int:
+    """The cores this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+def _here(tasks: Sequence[Task], tell: Tell) -> list[Done]:
+    found = []
+    for task in tasks:
+        found.append(run_task(task))
+        tell(len(found), len(tasks))
+    return found
+
+
+def _in_processes(tasks: Sequence[Task], jobs: int, tell: Tell) -> list[Done]:
+    found: dict[int, Done] = {}
+    for life in range(LIVES):
+        waiting = [number for number in range(len(tasks)) if number not in found]
+        try:
+            for number, done in _pooled(tasks, waiting, jobs):
+                found[number] = done
+                tell(len(found), len(tasks))
+            break
+        except BrokenProcessPool:  # a worker was killed: what it had is done again
+            if life == LIVES - 1:
+                raise
+    return [found[number] for number in range(len(tasks))]
+
+
+def _pooled(tasks: Sequence[Task], waiting: Sequence[int], jobs: int) -> Iterator[tuple[int, Done]]:
+    # spawn, not fork: this process may have threads, and a fork would copy their locks
+    with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
+        numbers = {pool.submit(run_task, tasks[number]): number for number in waiting}
+        for future in as_completed(numbers):
+            yield numbers[future], future.result()
+
+
+def _on_cluster(tasks: Sequence[Task], address: str, tell: Tell) -> list[Done]:
+    client_of: Any = _dask()
+    try:
+        client = client_of(address, timeout="10s")
+    except (OSError, TimeoutError, ValueError) as error:
+        raise InputError(
+            f"--cluster {address}: {error}: expected the address of a running Dask scheduler,"
+            " for example tcp://127.0.0.1:8786"
+        ) from None
+    with client:
+        # pure=False: two equal tasks are two tasks; retries: a task lost with its worker runs again
+        futures = [client.submit(run_task, task, pure=False, retries=LIVES) for task in tasks]
+        for count, _ in enumerate(_completed(futures), start=1):
+            tell(count, len(tasks))
+        found: list[Done] = client.gather(futures)
+    return found
+
+
+def _dask() -> Any:
+    try:
+        from distributed import Client
+    except ImportError:
+        raise InputError(
+            "--cluster: Dask is not installed, expected the package distributed:"
+            " pip install 'stridescope[cluster]'"
+        ) from None
+    return Client
+
+
+def _completed(futures: Sequence[Any]) -> Iterator[Any]:
+    from distributed import as_completed as completed
+
+    yield from completed(futures)

@@ -1,0 +1,56 @@
+"""The report: one page that needs nothing else, and shows every row with its verdict."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+from playwright.sync_api import Browser
+
+from app.outputs.report import number, report
+from app.study import names_of, study
+from tests.studies.doubles import a_study
+
+
+def test_nothing_is_fetched_and_no_script_runs() -> None:
+    page = report([a_study()], {})
+    for word in ("<script", "http://", "https://", "<link", "@import", "url("):
+        assert word not in page
+
+
+def test_words_never_become_markup() -> None:
+    page = report([a_study(text="<img src=x>")], {"<img src=x>": "<img src=x>"})
+    assert "<img" not in page
+
+
+@pytest.mark.parametrize(("value", "text"), [
+    (1.23456, "1.235"), (-0.5, "−0.5"), (123456.0, "123456"), (1.5e-13, "1.5 × 10^−13"),
+])  # fmt: skip
+def test_numbers_for_people(value: float, text: str) -> None:
+    assert number(value) == text
+
+
+def test_a_real_browser_shows_plots_verdicts_and_both_themes(
+    browser: Browser, tmp_path: Path, build_dir: Path
+) -> None:
+    outcome = study(names_of("integrators"), 1, None, lambda done, of: None)
+    path = tmp_path / "report.html"
+    path.write_text(report(outcome.studies, {}), "utf-8")
+    asked: list[str] = []
+    for scheme, light in (("light", True), ("dark", False)):
+        with browser.new_context(color_scheme=scheme, viewport={"width": 1280, "height": 900}) as context:  # type: ignore[arg-type]
+            page = context.new_page()
+            page.on("request", lambda request: asked.append(request.url))
+            page.goto(path.as_uri())
+            assert page.locator("figure svg[role=img]").count() == 7
+            for box in page.locator("figure svg[role=img]").all():
+                size = box.bounding_box()
+                assert size is not None
+                assert size["width"] > 300
+            assert page.locator("td.v", has_text="reproduced").count() > 24
+            paper = page.evaluate("getComputedStyle(document.body).backgroundColor")
+            assert (int(paper.removeprefix("rgb(").split(",")[0]) > 128) is light
+            wide = page.evaluate("document.documentElement.scrollWidth")
+            assert wide <= 1280
+            page.screenshot(path=build_dir / f"report-{scheme}.png", full_page=True)
+    assert asked == [path.as_uri()] * 2
