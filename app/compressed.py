@@ -14,12 +14,18 @@ def pack(data: bytes) -> bytes:
     return zstandard.ZstdCompressor(level=_LEVEL).compress(data)
 
 
-def unpack(frame: bytes, size: int) -> bytes | None:
-    """The ``size`` bytes of a frame; None if it is damaged or says another size."""
-    try:
-        if size > LARGEST or zstandard.frame_content_size(frame) != size:
+class Unpacker:
+    """Unpacks frames, one after the other; to be used by one thread."""
+
+    def __init__(self) -> None:
+        self._decompressor = zstandard.ZstdDecompressor()
+
+    def __call__(self, frame: bytes, size: int) -> bytes | None:
+        """The ``size`` bytes of a frame; None if it is damaged or says another size."""
+        try:
+            if size > LARGEST or zstandard.frame_content_size(frame) != size:
+                return None
+            data = self._decompressor.decompress(frame, max_output_size=max(size, 1))
+        except (zstandard.ZstdError, MemoryError):
             return None
-        data = zstandard.ZstdDecompressor().decompress(frame, max_output_size=max(size, 1))
-    except (zstandard.ZstdError, MemoryError):
-        return None
-    return data if len(data) == size else None
+        return data if len(data) == size else None

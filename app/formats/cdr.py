@@ -9,9 +9,6 @@ import math
 import struct
 from functools import cache
 
-import numpy as np
-from numpy.typing import NDArray
-
 from app.motion import Floats, Quaternion, Vector
 
 _HEADER = """
@@ -92,13 +89,15 @@ def imu(stamp_ns: int, frame: str, q_nb: Quaternion | None, rate_b: Vector, forc
 
 
 def imu_columns(doubles: Floats) -> tuple[Floats, Floats, Floats]:
-    """Of doubles [n, 37]: q_nb [n, 4] wxyz (NaN where there is none), rate [n, 3], force [n, 3]."""
+    """Of doubles [n, 11], ``IMU_COLUMNS``: q_nb [n, 4] wxyz (NaN for none), rate [n, 3], force [n, 3]."""
     q_nb = doubles[:, [3, 0, 1, 2]]
     q_nb[doubles[:, 4] == -1.0] = math.nan
-    return q_nb, doubles[:, 13:16], doubles[:, 25:28]
+    return q_nb, doubles[:, 5:8].copy(), doubles[:, 8:11].copy()
 
 
 IMU_DOUBLES = 37
+#: Those of them that say anything: orientation xyzw, whether there is one, rate, force.
+IMU_COLUMNS = (0, 1, 2, 3, 4, 13, 14, 15, 25, 26, 27)
 
 
 def magnetic_field(stamp_ns: int, frame: str, field_t: Vector) -> bytes:
@@ -139,12 +138,3 @@ def microtesla(doubles: Floats) -> Floats:
 def pose(stamp_ns: int, frame: str, position_n: Vector, q_nb: Quaternion) -> bytes:
     """``geometry_msgs/PoseStamped``: a place and an orientation (wxyz in, xyzw in the message)."""
     return _pack(stamp_ns, frame, (*position_n, *q_nb[1:], q_nb[0]))
-
-
-def doubles_of(messages: list[bytes], count: int) -> Floats:
-    """The last ``count`` doubles of every message, [n, count]; ``ValueError`` if one is too short."""
-    if any(len(message) < 16 + 8 * count for message in messages):
-        raise ValueError("a message is too short")
-    joined = b"".join(message[-8 * count :] for message in messages)
-    table: NDArray[np.float64] = np.frombuffer(joined, "<f8").astype(np.float64).reshape(-1, count)
-    return table

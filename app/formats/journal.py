@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any, NamedTuple, get_args
 
@@ -32,6 +33,17 @@ def from_json(data: bytes) -> dict[str, Any]:
     except (ValueError, RecursionError):
         return {}
     return content if isinstance(content, dict) else {}
+
+
+def all_from_json(items: Sequence[bytes]) -> list[dict[str, Any]]:
+    """The same for many at once."""
+    try:
+        content = json.loads(b"[" + b",".join(items) + b"]")
+    except (ValueError, RecursionError):
+        content = []
+    if len(content) == len(items) and all(isinstance(item, dict) for item in content):
+        return list(content)
+    return [from_json(item) for item in items]
 
 
 def write_start(start: Start) -> bytes:

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import gc
 import math
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from app.formats import cdr, journal, keeping, mcap
 from app.formats.clean import countable
+from app.formats.gathering import Contents, Doubles, Gathered, gather
 from app.formats.raw import RawFoot
 from app.motion import (
     Floats,
@@ -33,13 +33,6 @@ from app.settings import Settings
 FORMAT = "Stridescope recording"
 #: Who begins a walk anew when a source does: the stamps start over, so what came before is another walk.
 SOURCE = "replay"
-
-
-class _Placed(NamedTuple):
-    """A message and its place among all messages of the file."""
-
-    place: int
-    message: mcap.Message
 
 
 @dataclass(frozen=True)
@@ -84,98 +77,102 @@ def read(name: str, data: bytes) -> Recording:
 
 def kept(name: str, data: bytes) -> Kept:
     """Everything whole in a file; ``InputError`` if it is not one of ours."""
-    gc.disable()  # a million messages are no garbage, and to look through them again and again costs most
     try:
-        return _kept(name, mcap.read(data))
-    finally:
-        gc.enable()
+        contents = gather(data, _want)
+        if not any(channel.schema.startswith("stridescope.") for channel in contents.channels.values()):
+            whose = "another program's" if contents.channels else "no whole chunk in it"
+            raise InputError(f"{name}: an MCAP file, but {whose}, expected a recording of Stridescope")
+        return _kept(contents)
+    except InputError:
+        raise
+    except (ValueError, OverflowError) as error:
+        raise InputError(f"{name}: {error}, expected a recording of Stridescope") from None
 
 
-def _kept(name: str, contents: mcap.Contents) -> Kept:
-    by_channel: dict[int, list[_Placed]] = {number: [] for number in contents.channels}
-    placed = (message for chunk in contents.chunks for message in chunk)
-    for place, message in enumerate(placed):
-        by_channel[message.channel].append(_Placed(place, message))
-    topics = {channel.topic: by_channel[number] for number, channel in contents.channels.items()}
-    if not any(channel.schema.startswith("stridescope.") for channel in contents.channels.values()):
-        whose = "another program's" if contents.channels else "no whole chunk in it"
-        raise InputError(f"{name}: an MCAP file, but {whose}, expected a recording of Stridescope")
-    about = [journal.from_json(item.message.data) for item in topics.get(keeping.RECORDING, ())]
-    starts = ((p, journal.read_start(m.data)) for p, m in topics.get(keeping.START, ()))
-    orders = ((p, journal.read_order(m.data)) for p, m in topics.get(keeping.ORDERS, ()))
-    texts = ((p, journal.from_json(m.data).get("text")) for p, m in topics.get(keeping.MARKERS, ()))
+def _want(channel: mcap.Channel) -> Doubles | bool:
+    """The numbers of the samples, the words of people; what the estimator made is only counted."""
+    kind = dict(channel.metadata).get("kind")
+    if kind == keeping.IMU:
+        return Doubles(cdr.IMU_DOUBLES, cdr.IMU_COLUMNS)
+    if kind == keeping.FIELD:
+        return Doubles(cdr.MAGNETIC_DOUBLES, (0, 1, 2))
+    return kind not in (keeping.POSE, keeping.STRIDES)
+
+
+def _kept(contents: Contents) -> Kept:
+    topics = {channel.topic: contents.gathered[number] for number, channel in contents.channels.items()}
+
+    def said(topic: str) -> list[tuple[int, bytes]]:
+        found = topics.get(topic)
+        return list(zip(found.place.tolist(), found.data, strict=True)) if found else []
+
+    about = [journal.from_json(data) for _, data in said(keeping.RECORDING)]
+    starts = ((place, journal.read_start(data)) for place, data in said(keeping.START))
+    orders = ((place, journal.read_order(data)) for place, data in said(keeping.ORDERS))
+    texts = ((place, journal.from_json(data).get("text")) for place, data in said(keeping.MARKERS))
     return Kept(
         about=about[0] if about else {},
-        readings=_all_readings(name, contents, by_channel),
-        starts=tuple((p, start) for p, start in starts if start is not None),
-        orders=tuple((p, *order) for p, order in orders if order is not None),
-        markers=tuple((p, text) for p, text in texts if isinstance(text, str)),
-        events=tuple(journal.from_json(m.data) for _, m in topics.get(keeping.EVENTS, ())),
+        readings=_all_readings(contents),
+        starts=tuple((place, start) for place, start in starts if start is not None),
+        orders=tuple((place, *order) for place, order in orders if order is not None),
+        markers=tuple((place, text) for place, text in texts if isinstance(text, str)),
+        events=tuple(journal.from_json(data) for _, data in said(keeping.EVENTS)),
         closed=contents.closed,
-        messages={topic: len(found) for topic, found in topics.items() if found},
+        messages={topic: len(found.place) for topic, found in topics.items() if len(found.place)},
     )
 
 
 # --- samples -------------------------------------------------------------------------------------
 
 
-def _all_readings(
-    name: str, contents: mcap.Contents, by_channel: dict[int, list[_Placed]]
-) -> tuple[Readings, ...]:
-    sensors: dict[str, dict[str, list[_Placed]]] = {}
+def _all_readings(contents: Contents) -> tuple[Readings, ...]:
+    sensors: dict[str, dict[str, Gathered]] = {}
     roles: dict[str, Role] = {}
     clocks: dict[str, str] = {}
     for number, channel in contents.channels.items():
         metadata = dict(channel.metadata)
         if {"sensor", "kind", "clock_ns"} <= set(metadata):
             sensor = metadata["sensor"]
-            sensors.setdefault(sensor, {})[metadata["kind"]] = by_channel[number]
+            sensors.setdefault(sensor, {})[metadata["kind"]] = contents.gathered[number]
             role = metadata.get("role", "")
             roles[sensor] = Role(role) if role in set(Role) else role_of(sensor)
             clocks[sensor] = metadata["clock_ns"]
-    try:
-        return tuple(
-            _readings(sensor, roles[sensor], int(clocks[sensor]), kinds)
-            for sensor, kinds in sensors.items()
-            if kinds.get(keeping.IMU)
-        )
-    except ValueError as error:
-        raise InputError(f"{name}: {error}, expected a recording of Stridescope") from None
+    return tuple(
+        _readings(sensor, roles[sensor], int(clocks[sensor]), kinds)
+        for sensor, kinds in sensors.items()
+        if keeping.IMU in kinds and len(kinds[keeping.IMU].place)
+    )
 
 
-def _readings(sensor: str, role: Role, clock_ns: int, kinds: dict[str, list[_Placed]]) -> Readings:
+def _readings(sensor: str, role: Role, clock_ns: int, kinds: dict[str, Gathered]) -> Readings:
     imu = kinds[keeping.IMU]
-    place = np.array([item.place for item in imu], np.int64)
-    messages = [item.message for item in imu]
-    doubles = cdr.doubles_of([message.data for message in messages], cdr.IMU_DOUBLES)
-    q_nb, rate, force = cdr.imu_columns(doubles)
-    fields = kinds.get(keeping.FIELD, [])
-    rows = _rows(place, fields)
-    field_b = np.full((len(imu), 3), math.nan)
-    field_doubles = cdr.doubles_of([item.message.data for item in fields], cdr.MAGNETIC_DOUBLES)
-    field_b[rows] = cdr.microtesla(field_doubles)
-    has_field = np.zeros(len(imu), np.bool_)
-    has_field[rows] = True
-    saturation = np.zeros(len(imu), np.uint16)
-    extras = kinds.get(keeping.EXTRA, [])
-    for row, item in zip(_rows(place, extras).tolist(), extras, strict=True):
-        extra = journal.from_json(item.message.data)
-        saturation[row] = _whole(extra.get("saturation"))
-        exact = extra.get("field_ut")
-        if isinstance(exact, list) and len(exact) == 3 and all(isinstance(x, float | int) for x in exact):
-            field_b[row] = exact
+    place = imu.place
+    q_nb, rate, force = cdr.imu_columns(imu.doubles)
+    field_b = np.full((len(place), 3), math.nan)
+    has_field = np.zeros(len(place), np.bool_)
+    saturation = np.zeros(len(place), np.uint16)
+    if keeping.FIELD in kinds and len(kinds[keeping.FIELD].place):
+        rows = _rows(place, kinds[keeping.FIELD].place)
+        field_b[rows] = cdr.microtesla(kinds[keeping.FIELD].doubles)
+        has_field[rows] = True
+    if keeping.EXTRA in kinds:
+        extras = kinds[keeping.EXTRA]
+        said = journal.all_from_json(extras.data)
+        for row, extra in zip(_rows(place, extras.place).tolist(), said, strict=True):
+            saturation[row] = _whole(extra.get("saturation"))
+            exact = extra.get("field_ut")
+            if isinstance(exact, list) and len(exact) == 3 and all(isinstance(x, float | int) for x in exact):
+                field_b[row] = exact
     return Readings(
         sensor, role, place,
-        seq=np.array([message.sequence for message in messages], np.int64),
-        device_ns=np.array([message.publish_ns for message in messages], np.uint64).astype(np.int64),
-        host_ns=np.array([message.log_ns for message in messages], np.uint64).astype(np.int64) - clock_ns,
+        seq=imu.sequence, device_ns=imu.publish_ns, host_ns=imu.log_ns - np.int64(clock_ns),
         force=force, rate=rate, field=field_b, has_field=has_field, saturation=saturation, q_nb=q_nb,
     )  # fmt: skip
 
 
-def _rows(place: Ints, before: list[_Placed]) -> Ints:
+def _rows(place: Ints, before: Ints) -> Ints:
     """The samples that messages which stand before them belong to."""
-    rows = np.searchsorted(place, np.array([item.place for item in before], np.int64))
+    rows = np.searchsorted(place, before)
     if len(rows) and int(rows[-1]) >= len(place):
         raise ValueError("a field without its sample")
     return rows.astype(np.int64)

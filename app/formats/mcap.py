@@ -12,12 +12,14 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.compressed import LARGEST, pack, unpack
+from app.compressed import LARGEST, Unpacker, pack
+from app.formats.records import MESSAGE, At, table
+from app.motion import Ints
 
 MAGIC = b"\x89MCAP0\r\n"
 LIBRARY = "stridescope"
 
-_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _MESSAGE, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(1, 9)
+_HEADER, _FOOTER, _SCHEMA, _CHANNEL, _, _CHUNK, _MESSAGE_INDEX, _CHUNK_INDEX = range(1, 9)
 _STATISTICS, _SUMMARY_OFFSET, _DATA_END = 0x0B, 0x0E, 0x0F
 _COMPRESSION = b"\x04\x00\x00\x00zstd"  # as it stands in every chunk
 _RECORD = struct.Struct("<BQ")
@@ -118,7 +120,7 @@ class Writer:
         index: dict[int, list[int]] = {}
         for channel, sequence, log_ns, publish_ns, data in self._messages:
             index.setdefault(channel, []).extend((log_ns, offset))
-            head = _MESSAGE_HEAD.pack(_MESSAGE, 22 + len(data), channel, sequence, log_ns, publish_ns)
+            head = _MESSAGE_HEAD.pack(MESSAGE, 22 + len(data), channel, sequence, log_ns, publish_ns)
             parts += (head, data)
             offset += len(head) + len(data)
         start = min(message.log_ns for message in self._messages)
@@ -196,15 +198,21 @@ def read(data: bytes) -> Contents:
         if found is not None:
             chunks.append(tuple(found))
     known = tuple(tuple(m for m in chunk if m.channel in channels) for chunk in chunks)
-    return Contents(channels, known, data.endswith(MAGIC) and len(data) > 2 * len(MAGIC))
+    return Contents(channels, known, is_closed(data))
+
+
+def is_closed(data: bytes) -> bool:
+    """Whether the file has its end."""
+    return data.endswith(MAGIC) and len(data) > 2 * len(MAGIC)
 
 
 def whole_chunks(data: bytes) -> Iterator[bytes]:
     """The records of every chunk whose CRC is good, in the file's order."""
+    unpack = Unpacker()
     position = len(MAGIC)
     while (mark := data.find(_COMPRESSION, position + _MARK_AT)) >= 0:
         begin = mark - _MARK_AT
-        records, length = _unpacked(data, begin)
+        records, length = _unpacked(data, begin, unpack)
         if records is None:
             position = begin + 1
         else:
@@ -212,7 +220,7 @@ def whole_chunks(data: bytes) -> Iterator[bytes]:
             position = begin + length
 
 
-def _unpacked(data: bytes, begin: int) -> tuple[bytes | None, int]:
+def _unpacked(data: bytes, begin: int, unpack: Unpacker) -> tuple[bytes | None, int]:
     """The records of a chunk that begins there, if one does, and the chunk's length."""
     if len(data) - begin < _CHUNK_HEAD.size:
         return None, 0
@@ -226,29 +234,38 @@ def _unpacked(data: bytes, begin: int) -> tuple[bytes | None, int]:
 
 def _messages(records: bytes, channels: dict[int, Channel]) -> list[Message] | None:
     """The messages of a chunk; its channels go into ``channels``. None if it is not what the CRC promised."""
-    found: list[Message] = []
+    rows = table(records)
+    if rows is None or not define(records, rows, channels):
+        return None
+    return [
+        Message(number, sequence, log_ns % 2**64, publish_ns % 2**64, records[begin:end])
+        for opcode, number, sequence, log_ns, publish_ns, begin, end in rows.tolist()
+        if opcode == MESSAGE
+    ]
+
+
+def define(records: bytes, rows: Ints, channels: dict[int, Channel]) -> bool:
+    """Put the channels that a chunk defines into ``channels``; False if a definition makes no sense."""
+    if len(rows) and rows[0, At.OPCODE] == MESSAGE and (rows[:, At.OPCODE] == MESSAGE).all():
+        return True
+    own = rows[rows[:, At.OPCODE] == _CHANNEL, At.NUMBER]
+    if all(number in channels for number in own.tolist()):  # repeated for whoever begins to read here
+        return True
     schemas: dict[int, tuple[str, bytes]] = {}
-    position = 0
+    found: dict[int, Channel] = {}
     try:
-        while position < len(records):
-            opcode, length = _RECORD.unpack_from(records, position)
-            content, position = position + _RECORD.size, position + _RECORD.size + length
-            if position > len(records):
-                return None
-            if opcode == _MESSAGE:
-                _, _, *head = _MESSAGE_HEAD.unpack_from(records, content - _RECORD.size)
-                channel_id, sequence, log_ns, publish_ns = head
-                data = records[content + 22 : position]
-                found.append(Message(channel_id, sequence, log_ns, publish_ns, data))
-            elif opcode == _SCHEMA:
-                number, name, definition = _schema(records[content:position])
+        for opcode, *_, begin, end in rows[rows[:, At.OPCODE] != MESSAGE].tolist():
+            if opcode == _SCHEMA:
+                number, name, definition = _schema(records[begin:end])
                 schemas[number] = (name, definition)
             elif opcode == _CHANNEL:
-                channel = _channel(records[content:position], schemas)
-                channels.setdefault(channel.id, channel)
+                channel = _channel(records[begin:end], schemas)
+                found.setdefault(channel.id, channel)
     except (struct.error, UnicodeDecodeError, KeyError):
-        return None
-    return found
+        return False
+    for number, channel in found.items():
+        channels.setdefault(number, channel)
+    return True
 
 
 def _text(data: bytes, at: int) -> tuple[str, int]:
