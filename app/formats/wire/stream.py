@@ -36,6 +36,7 @@ class Counters:
     unknown: int = 0  # held, but carry nothing that is read here
     dropped: int = 0  # held, but their reading was unusable: not finite, incomplete, a stamp twice
     lost: int = 0  # missing by the device's own packet counter, where it has one
+    repeated: int = 0  # came again, or too late: known by their number, and not given twice
 
 
 class Frames:
