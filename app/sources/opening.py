@@ -13,6 +13,8 @@ from app.sources.files import load
 from app.sources.replay import Replay
 from app.sources.source import Source
 from app.sources.spec import LIVE, Spec, parse_spec
+from app.sources.udp import UdpSource
+from app.sources.ws import WsSource
 
 _log = logging.getLogger(__name__)
 
@@ -35,6 +37,10 @@ def open_source(spec_text: str, *, finish: bool = False, changes: bool = True) -
 
 def open_live(spec: Spec) -> Source:
     """The live source of each kind."""
+    if spec.kind == "ws":
+        return WsSource(spec)
+    if spec.kind == "udp":
+        return UdpSource(spec)
     raise InputError(
         f"{spec.kind}:{spec.target}: {spec.kind}: sources are not in this version, "
         "expected a recording or sim:walk"

@@ -1,0 +1,118 @@
+"""Edge: where samples that others send wait for the walk: put in from any thread, read on one loop."""
+
+from __future__ import annotations
+
+import asyncio
+import threading
+import time
+from collections.abc import AsyncIterator, Callable, Mapping, Sequence
+
+from app.motion import Link, Role, Sample, SourceInfo, role_of
+from app.sources.source import Item, Live
+
+#: Between two looks: a burst costs one turn of the loop, not one for each sample.
+REST_S = 0.002
+#: Nothing for so long: the link counts as lost.
+SILENT_S = 1.0
+#: A sender that can wait is made to wait here.
+FULL = 100_000
+#: One that cannot wait (UDP) loses its oldest samples here: four hours of a foot at 100 Hz.
+MOST = 1_500_000
+
+
+class Inbox(Live):
+    """A live source that is filled by ``put``. What it says of itself comes from ``told`` and ``dropped``."""
+
+    def __init__(
+        self,
+        name: str,
+        format_: str,
+        told: Callable[[], Sequence[str]] = tuple,
+        dropped: Callable[[], Mapping[str, int]] = dict,
+    ) -> None:
+        self._name, self._format = name, format_
+        self._told, self._dropped = told, dropped
+        self._lock = threading.Lock()
+        self._waiting: list[Sample] = []
+        self._sensors: dict[str, Role] = {}
+        self._overflowed = 0
+        self._last_s: float | None = None
+        self._loop: asyncio.AbstractEventLoop | None = None
+        self._news = asyncio.Event()
+        self._woken = False
+
+    def put(self, samples: Sequence[Sample]) -> None:
+        """Hand samples over, from any thread; never waits."""
+        if not samples:
+            return
+        with self._lock:
+            self._waiting += samples
+            if len(self._waiting) > MOST:
+                self._overflowed += len(self._waiting) // 2
+                del self._waiting[: len(self._waiting) // 2]
+            self._last_s = time.monotonic()
+            for sample in samples:
+                if sample.sensor not in self._sensors:
+                    self._sensors = {**self._sensors, sample.sensor: role_of(sample.sensor)}
+            wake = self._loop is not None and not self._woken
+            self._woken = self._woken or wake
+        if wake and self._loop is not None:
+            try:
+                self._loop.call_soon_threadsafe(self._news.set)
+            except RuntimeError:  # the loop has ended: nobody reads any more
+                self._loop = None
+
+    @property
+    def full(self) -> bool:
+        """Whether a sender that can wait should."""
+        return len(self._waiting) > FULL
+
+    @property
+    def info(self) -> SourceInfo:
+        """Who has sent what so far."""
+        dropped = {reason: count for reason, count in self._dropped().items() if count}
+        if self._overflowed:
+            dropped["came faster than the walk could take them"] = self._overflowed
+        return SourceInfo(
+            self._name, self._format, self._sensors, assumed=tuple(self._told()), dropped=dropped
+        )
+
+    @property
+    def silent_s(self) -> float | None:
+        """Seconds since the last sample; None before the first."""
+        return None if self._last_s is None else time.monotonic() - self._last_s
+
+    @property
+    def link(self) -> Link:
+        """Waiting for the first sample, live, or lost when no more come."""
+        silent_s = self.silent_s
+        if silent_s is None:
+            return Link.WAITING
+        return Link.LIVE if silent_s < SILENT_S else Link.LOST
+
+    @property
+    def detail(self) -> str:
+        """What is being waited for."""
+        if self.link is Link.LIVE:
+            return ""
+        return f"{self._name}: {'nobody sends yet' if self._last_s is None else 'nobody sends any more'}"
+
+    def __aiter__(self) -> AsyncIterator[Item]:
+        return self._read()
+
+    async def _read(self) -> AsyncIterator[Item]:
+        self._loop = asyncio.get_running_loop()
+        while True:
+            with self._lock:
+                batch, self._waiting = self._waiting, []
+                self._woken = bool(batch)
+                self._news.clear()
+            for sample in batch:
+                yield sample
+            if batch:
+                await asyncio.sleep(REST_S)
+            else:
+                await self._news.wait()
+
+    def close(self) -> None:
+        """Nothing is held open."""
