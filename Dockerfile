@@ -22,5 +22,5 @@ EXPOSE 8080
 HEALTHCHECK --interval=10s --timeout=3s --start-period=30s \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:8080/healthz', timeout=2)"]
 
-# Beyond loopback the app starts only with a token: STRIDESCOPE_TOKEN.
+# Beyond loopback there is always a token: STRIDESCOPE_TOKEN, or one that is made and printed.
 CMD ["stridescope", "walk", "--host", "0.0.0.0", "--port", "8080", "--no-open"]

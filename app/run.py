@@ -25,6 +25,7 @@ import numpy as np
 
 from app import motion as m
 from app import profiles
+from app.door.access import Access
 from app.door.front import Door
 from app.estimator import sweep as gains
 from app.formats.journal import Start
@@ -56,9 +57,7 @@ class Options:
 
     source: str
     settings: Settings
-    host: str
-    port: int
-    token: str | None
+    access: Access
     open_browser: bool
     budget_bytes: int = DEFAULT_BUDGET
     told: bool = False  # the settings were given: a recording's own changes are not repeated
@@ -114,17 +113,16 @@ class Viewer:
             scene = Scene(submit)
             closing.callback(scene.close)
             door = Door(
-                host=self._options.host,
-                port=self._options.port,
+                self._options.access,
                 viser_port=scene.port,
                 rules=scene.rules,
                 health=self._health,
-                token=self._options.token,
                 extra_head=scene.head,
             )
             closing.callback(door.stop)
             door.start()
-            tell(f"Stridescope is at {door.address}  (Ctrl-C ends it)")
+            for line in door.greeting():
+                tell(line)
             if self._options.open_browser:
                 open_in_browser(door.address)
             await self._run(scene)

@@ -14,6 +14,7 @@ from types import FrameType
 
 import numpy as np
 
+from app.door.access import Access
 from app.door.front import Door
 from app.motion import Role
 from app.scene import private
@@ -47,7 +48,7 @@ def main() -> None:
     else:
         frame = server.scene.add_frame(NODE, show_axes=True)
     server.initial_camera.position, server.initial_camera.look_at = (1.25, -1.75, 1.05), (0.0, 0.15, 0.05)
-    door = Door(host="127.0.0.1", port=asked.port, viser_port=server.get_port(), rules=dict, health=dict)
+    door = Door(Access(port=asked.port), viser_port=server.get_port(), rules=dict, health=dict)
     door.start()
     print(server.get_port(), flush=True)
     sets: list[tuple[float, ...]] = []

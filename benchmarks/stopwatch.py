@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from app import run
+from app.door.access import Access
 from app.motion import ATTITUDE, POSITION, Sample, Snapshot, Status
 from app.scene.page import Scene
 from app.session import Session
@@ -98,7 +99,7 @@ def main() -> None:
     parser.add_argument("--windows", type=Path)
     asked = parser.parse_args()
     viewer = run.Viewer(
-        run.Options(asked.spec, Settings(), "127.0.0.1", asked.port, None, open_browser=False),
+        run.Options(asked.spec, Settings(), Access(port=asked.port), open_browser=False),
         open_source(asked.spec),
     )
     noted: list[tuple[float, ...]] = []

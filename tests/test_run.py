@@ -9,6 +9,7 @@ import signal
 import socket
 import subprocess
 import sys
+import urllib.error
 import urllib.request
 from collections.abc import Iterator
 from pathlib import Path
@@ -180,8 +181,18 @@ def test_a_taken_port_is_an_error(tmp_path: Path) -> None:
         assert port in refused(tmp_path, "--port", port, "--source", SOURCE)
 
 
-def test_another_host_needs_a_token(tmp_path: Path) -> None:
-    assert "token" in refused(tmp_path, "--host", "0.0.0.0", "--source", SOURCE)
+def test_on_another_host_tokens_are_made_and_told_once(tmp_path: Path) -> None:
+    program = Program(tmp_path, "--source", SOURCE, "--host", "0.0.0.0")
+    operator = program.greeting.split()[3]
+    assert program.process.stdout is not None
+    viewer = program.process.stdout.readline().split()[-1]
+    assert re.fullmatch(r"http://[\d.]+:\d+/\?token=[\w-]{22}", operator)
+    assert re.fullmatch(r"http://[\d.]+:\d+/\?token=[\w-]{22}", viewer)
+    with pytest.raises(urllib.error.HTTPError, match="401"):
+        urllib.request.urlopen(program.address, timeout=30)
+    assert program.end() == 0
+    assert "█" in program.process.stdout.read()
+    assert program.errors.read_text() == ""
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,15 @@
-"""Shell: what several commands share: the parser, settings, the token, the profile it starts with."""
+"""Shell: what several commands share: the parser, settings, the public port, the profile it starts with."""
 
 from __future__ import annotations
 
 import argparse
 import os
+import sys
 from pathlib import Path
 from typing import NoReturn, Protocol
 
 from app import profiles
+from app.door.access import Access, is_loopback, made_token
 from app.motion import InputError
 from app.settings import Settings, parse
 
@@ -59,14 +61,48 @@ def settings_of(options: argparse.Namespace) -> Settings:
         raise InputError(f"--set {error}") from None
 
 
-def token_of(options: argparse.Namespace) -> str | None:
-    """The token from a file or the environment; none is fine on loopback."""
-    if options.token_file is None:
-        return os.environ.get("STRIDESCOPE_TOKEN") or None
+def add_door(command: argparse.ArgumentParser) -> None:
+    """The options of the public port: where it listens, and who may come in."""
+    command.add_argument(
+        "--host", default="127.0.0.1", help="address to listen on; other than loopback always with tokens"
+    )
+    command.add_argument("--port", type=int, default=8080)
+    command.add_argument(
+        "--token-file", metavar="FILE", type=Path,
+        help="the token of who operates (or $STRIDESCOPE_TOKEN); else one is made where one is needed",
+    )  # fmt: skip
+    command.add_argument(
+        "--viewer-token-file", metavar="FILE", type=Path,
+        help="the token of who only watches (or $STRIDESCOPE_VIEWER_TOKEN); else made likewise",
+    )  # fmt: skip
+    command.add_argument(
+        "--with-token", action="store_true", help="make tokens on loopback too: other people use this machine"
+    )
+    command.add_argument("--no-open", action="store_true", help="do not open a browser")
+
+
+def door_options(options: argparse.Namespace) -> Access:
+    """Where to listen, and the tokens: given, or made for this run where others could come in."""
+    operator = _token(options.token_file, "--token-file", "STRIDESCOPE_TOKEN")
+    viewer = _token(options.viewer_token_file, "--viewer-token-file", "STRIDESCOPE_VIEWER_TOKEN")
+    if operator or viewer or options.with_token or not is_loopback(options.host):
+        operator, viewer = operator or made_token(), viewer or made_token()
+    return Access(options.host, options.port, operator, viewer)
+
+
+def tell(line: str) -> None:
+    """Print a line now; what the terminal has no letters for (a QR code's blocks) is left out."""
+    encoding = sys.stdout.encoding or "utf-8"
+    print(line.encode(encoding, "ignore").decode(encoding), flush=True)
+
+
+def _token(file: Path | None, option: str, variable: str) -> str | None:
+    if file is None:
+        return os.environ.get(variable) or None
     try:
-        token = Path(options.token_file).read_text("utf-8").strip()
+        token = file.read_text("utf-8").strip()
     except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"--token-file {options.token_file}: cannot be read: {error}") from None
+        raise InputError(f"{option} {file}: cannot be read: {error}") from None
     if not token:
-        raise InputError(f"--token-file {options.token_file}: empty, expected a token")
+        raise InputError(f"{option} {file}: empty, expected a token")
     return token

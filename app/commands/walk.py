@@ -5,7 +5,15 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from app.commands.shared import DEFAULT_PROFILE, Commands, add_settings, settings_of, token_of
+from app.commands.shared import (
+    DEFAULT_PROFILE,
+    Commands,
+    add_door,
+    add_settings,
+    door_options,
+    settings_of,
+    tell,
+)
 from app.motion import InputError
 
 DEMO = Path(__file__).parent.parent.parent / "recordings" / "demo.csv"
@@ -16,20 +24,13 @@ def add(commands: Commands) -> None:
     walk = commands.add_parser("walk", help="the live page (this is the default)")
     walk.add_argument("--source", metavar="SPEC", default=None, help="a recording, replay:… or sim:walk?…")
     add_settings(walk)
-    walk.add_argument(
-        "--host", default="127.0.0.1", help="address to listen on; other than loopback needs a token"
-    )
-    walk.add_argument("--port", type=int, default=8080)
-    walk.add_argument(
-        "--token-file", metavar="FILE", help="the token that browsers need (or $STRIDESCOPE_TOKEN)"
-    )
+    add_door(walk)
     walk.add_argument(
         "--memory-mb", type=int, default=512, help="budget for samples; beyond it the oldest go"
     )
     walk.add_argument(
         "--record", metavar="DIR", type=Path, help="record from the beginning, into this folder"
     )
-    walk.add_argument("--no-open", action="store_true", help="do not open a browser")
 
 
 def run(options: argparse.Namespace) -> int:
@@ -42,15 +43,13 @@ def run(options: argparse.Namespace) -> int:
         viewer.Options(
             source=options.source if options.source is not None else str(DEMO),
             settings=settings_of(options),
-            host=options.host,
-            port=options.port,
-            token=token_of(options),
+            access=door_options(options),
             open_browser=not options.no_open,
             budget_bytes=options.memory_mb * 2**20,
             told=options.profile is not None or bool(options.set),
             profile=Path(options.profile or DEFAULT_PROFILE).stem,
             record=options.record,
         ),
-        lambda line: print(line, flush=True),
+        tell,
     )
     return 0

@@ -9,11 +9,13 @@ import logging
 import socket
 import threading
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
-from urllib.parse import quote
 
+from app.door.access import Access, is_loopback
 from app.door.counters import Counters
-from app.door.gate import Gate, is_loopback
+from app.door.gate import Gate
+from app.door.greeting import greeting
 from app.door.service import Service
 from app.door.upstream import SOCKET_BYTES
 from app.motion import GuiRule, InputError
@@ -33,38 +35,36 @@ class Door:
 
     def __init__(
         self,
+        access: Access,
         *,
-        host: str,
-        port: int,
         viser_port: int,
         rules: Callable[[], Mapping[str, GuiRule]],
         health: Callable[[], Mapping[str, object]],
-        token: str | None = None,
         extra_head: str = "",
     ) -> None:
-        if not is_loopback(host) and not token:
-            raise InputError(
-                f"host {host}: others on the network could come in; give a token, or stay on 127.0.0.1"
-            )
-        if not 0 <= port <= 65535:
-            raise InputError(f"port {port}: expected 0 to 65535")
         self.counters = Counters()
-        self._host, self._port, self._token = host, port, token or None
+        self.access = access
         self._viser_port, self._rules, self._health, self._extra_head = viser_port, rules, health, extra_head
         self._thread: threading.Thread | None = None
         self._stop: Callable[[], object] | None = None
 
     @property
     def address(self) -> str:
-        """What to open in a browser; with ``?token=…`` where there is one: never log it."""
-        host = _reachable(self._host)
-        query = f"/?token={quote(self._token, safe='')}" if self._token else ""
-        return f"http://{f'[{host}]' if ':' in host else host}:{self._port}{query}"
+        """What an operator opens in a browser; with ``?token=…`` where there is one: never log it."""
+        return self._address(self.access.operator)
+
+    def greeting(self) -> list[str]:
+        """What to print once it is open, and nowhere else: the addresses with their tokens."""
+        watch = self._address(self.access.viewer) if self.access.viewer else None
+        return greeting(self.address, watch, reachable=not is_loopback(self.access.host))
+
+    def _address(self, token: str | None) -> str:
+        return self.access.address(_reachable(self.access.host), self.access.port, token)
 
     def start(self) -> None:
         """Bind, and return when serving; a host or port that cannot be had raises ``InputError``."""
-        listener = _bind(self._host, self._port)
-        self._port = listener.getsockname()[1]
+        listener = _bind(self.access.host, self.access.port)
+        self.access = replace(self.access, port=listener.getsockname()[1])
         ready = threading.Event()
         self._thread = threading.Thread(target=self._run, args=(listener, ready), name="door", daemon=True)
         self._thread.start()
@@ -98,7 +98,7 @@ class Door:
             self._stop = partial(loop.call_soon_threadsafe, stopping.set)
             ready.set()
 
-        gate = Gate(self._host, self._port, self._token, _own_names(self._host))
+        gate = Gate(self.access, _own_names(self.access.host))
         service = Service(gate, self._viser_port, self._rules, self._health, self._extra_head, self.counters)
         await service.run(listener, stopping, opened)
 

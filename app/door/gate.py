@@ -9,11 +9,12 @@ from __future__ import annotations
 
 import hashlib
 import hmac
-import ipaddress
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import NamedTuple
+
+from app.door.access import Access, Visitor, is_ip, is_loopback
 
 _HOST = re.compile(r"(\[[0-9a-f:.]{2,45}\]|[a-z0-9._-]{1,253})(?::([0-9]{1,5}))?")
 _DEFAULT_PORTS = {"http": 80, "https": 443}
@@ -43,24 +44,6 @@ def split_host(header: str) -> Address | None:
     return None if port is not None and port > 65535 else Address(match[1].strip("[]"), port)
 
 
-def is_ip(name: str) -> bool:
-    """Whether ``name`` is a plain IP address: such a Host cannot come from a rebound name."""
-    try:
-        ipaddress.ip_address(name)
-    except ValueError:
-        return False
-    return True
-
-
-def is_loopback(name: str) -> bool:
-    """Whether ``name`` can only mean this machine. A name that merely resolves to it does not count."""
-    if not is_ip(name):
-        return name.lower() == "localhost"
-    ip = ipaddress.ip_address(name)
-    inner = ip.ipv4_mapped if isinstance(ip, ipaddress.IPv6Address) else None
-    return (inner or ip).is_loopback
-
-
 @dataclass(frozen=True)
 class Gate:
     """The rules of one door. ``names`` are further host names it answers to, in lower case.
@@ -69,20 +52,21 @@ class Gate:
     localhost or one of ``names``, with any port (a container's port may be mapped).
     """
 
-    host: str
-    port: int
-    token: str | None = None
+    access: Access
     names: frozenset[str] = frozenset()
 
     @property
     def cookie_name(self) -> str:
-        """Cookies don't tell ports apart, so the name does."""
-        return f"stridescope-{self.port}"
+        """Cookies don't tell ports apart, so the name does; the prefix ties it to this host and to TLS."""
+        name = f"stridescope-{self.access.port}"
+        return f"__Host-{name}" if self.access.certificate else name
 
-    @property
-    def cookie_value(self) -> str:
-        """Follows from the token, but doesn't tell it, and has only letters that a cookie may have."""
-        return hashlib.sha256(b"stridescope cookie:" + _bytes(self.token or "")).hexdigest()
+    def cookie_value(self, visitor: Visitor) -> str:
+        """Follows from the token, but doesn't tell it, and has only letters that a cookie may have.
+
+        So a browser stays known when the program starts again with the same token, and no longer.
+        """
+        return hashlib.sha256(b"stridescope cookie:" + _bytes(self._token(visitor))).hexdigest()
 
     def check_site(self, hosts: Sequence[str], origins: Sequence[str], websocket: bool) -> Refusal | None:
         """Judge the Host and Origin headers of a request, as many as came."""
@@ -90,39 +74,52 @@ class Gate:
         if host is None or not self._is_ours(host):
             return Refusal(403, "host", f"403: {_shown(hosts)} is not this program's address.{self._hint()}")
         missing = not origins and not websocket
-        if not missing and (len(origins) != 1 or not _same_origin(origins[0], host)):
+        if not missing and (len(origins) != 1 or not self._same_origin(origins[0], host)):
             return Refusal(403, "origin", f"403: the origin {_shown(origins)} is not this page's own.")
         return None
 
-    def check_token(self, token: str) -> Refusal | None:
-        """Judge the token in an address; takes the same time for every wrong one."""
-        return self._compare(token, self.token or "")
+    def check_token(self, token: str) -> Visitor | Refusal:
+        """Who has this token; takes the same time for every wrong one."""
+        return self._judge(token, {visitor: self._token(visitor) for visitor in Visitor})
 
-    def check_cookie(self, cookie: str | None) -> Refusal | None:
-        """Judge the cookie of a request."""
-        return self._compare(cookie or "", self.cookie_value)
+    def check_cookie(self, cookie: str | None) -> Visitor | Refusal:
+        """Who has this cookie."""
+        values = {visitor: self.cookie_value(visitor) if self._token(visitor) else "" for visitor in Visitor}
+        return self._judge(cookie or "", values)
 
-    def _compare(self, given: str, expected: str) -> Refusal | None:
-        if self.token is None or hmac.compare_digest(_bytes(given), _bytes(expected)):
-            return None  # without a token the door is open
+    def _judge(self, given: str, expected: dict[Visitor, str]) -> Visitor | Refusal:
+        if self.access.operator is None:
+            return Visitor.OPERATOR  # without a token the door is open
+        same = {visitor: hmac.compare_digest(_bytes(given), _bytes(it)) for visitor, it in expected.items()}
+        for visitor in Visitor:
+            if expected[visitor] and same[visitor]:
+                return visitor
         return Refusal(401, "token", "401: open the address with ?token=… that the program printed.")
 
+    def _token(self, visitor: Visitor) -> str:
+        return (self.access.operator if visitor is Visitor.OPERATOR else self.access.viewer) or ""
+
     def _is_ours(self, host: Address) -> bool:
-        if is_loopback(self.host):
-            return is_loopback(host.name) and (host.port or 80) == self.port
+        if is_loopback(self.access.host):
+            port = host.port or _DEFAULT_PORTS[self.access.scheme]
+            return is_loopback(host.name) and port == self.access.port
         return is_ip(host.name) or host.name == "localhost" or host.name in self.names
 
+    def _same_origin(self, origin: str, host: Address) -> bool:
+        scheme, separator, rest = origin.lower().partition("://")
+        theirs = split_host(rest) if separator and scheme in self._schemes() else None
+        if theirs is None:
+            return False
+        default = _DEFAULT_PORTS[scheme]
+        return (theirs.name, theirs.port or default) == (host.name, host.port or default)
+
+    def _schemes(self) -> Sequence[str]:
+        """A proxy in front of us may speak TLS where we don't; nobody takes off what we put on."""
+        return ("https",) if self.access.certificate else ("http", "https")
+
     def _hint(self) -> str:
-        return f" Open http://localhost:{self.port} instead." if is_loopback(self.host) else ""
-
-
-def _same_origin(origin: str, host: Address) -> bool:
-    scheme, separator, rest = origin.lower().partition("://")
-    theirs = split_host(rest) if separator and scheme in _DEFAULT_PORTS else None
-    if theirs is None:
-        return False
-    default = _DEFAULT_PORTS[scheme]
-    return (theirs.name, theirs.port or default) == (host.name, host.port or default)
+        access = self.access
+        return f" Open {access.scheme}://localhost:{access.port} instead." if is_loopback(access.host) else ""
 
 
 def _shown(headers: Sequence[str]) -> str:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from app.door.access import Visitor
+
 #: Sent with every answer.
 SAFE_HEADERS = {
     "X-Content-Type-Options": "nosniff",
@@ -17,13 +19,16 @@ NOTHING_POLICY = "default-src 'none'; frame-ancestors 'none'"
 _MODULE = 'e.type="module";'
 
 
-def dress(html: str, extra_head: str, nonce: str) -> str:
+def dress(html: str, extra_head: str, nonce: str, visitor: Visitor = Visitor.OPERATOR) -> str:
     """viser's index.html with ``extra_head`` first in its head, all scripts marked with ``nonce``.
 
+    Its root says who looks, ``<html data-visitor="viewer">``, so that style and script can show it.
     ``extra_head`` is our own ``<script>`` and ``<style>``. ``nonce`` (letters and digits) is new
     for each answer: scripts that got into the page any other way don't run.
     """
-    with_ours = html.replace("<head>", f"<head>{extra_head}", 1)
+    with_ours = html.replace("<html", f'<html data-visitor="{visitor}"', 1).replace(
+        "<head>", f"<head>{extra_head}", 1
+    )
     marked = with_ours.replace("<script", f'<script nonce="{nonce}"')
     return marked.replace(_MODULE, f'{_MODULE}e.nonce="{nonce}";')
 

@@ -13,10 +13,11 @@ import msgspec
 from aiohttp import hdrs, web
 
 from app.door import page
+from app.door.access import Visitor, is_loopback
 from app.door.counters import Counters
 from app.door.filter import Rules
-from app.door.gate import Gate, Refusal, is_loopback
-from app.door.upstream import Upstream, is_websocket, open_session, say, say_starting, without_token
+from app.door.gate import Gate, Refusal
+from app.door.upstream import VISITOR, Upstream, is_websocket, open_session, say, say_starting, without_token
 
 log = logging.getLogger(__name__)
 # aiohttp would log the first line of a request that it cannot read, token and all.
@@ -91,13 +92,14 @@ class Service:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
-        refusal = self._judge(request)
-        if refusal is not None:
-            self.counters.refuse(refusal.what)
-            log.info("refused a request from %s: %s", request.remote, refusal.line)
-            return say(refusal.status, refusal.line)
+        judged = self._judge(request)
+        if isinstance(judged, Refusal):
+            self.counters.refuse(judged.what)
+            log.info("refused a request from %s: %s", request.remote, judged.line)
+            return say(judged.status, judged.line)
         if self._is_first_visit(request):
-            return self._welcome(request)
+            return self._welcome(request, judged)
+        request[VISITOR] = judged
         try:
             return await handler(request)
         except (web.HTTPException, ConnectionError):  # an answer in itself; a browser that left
@@ -108,7 +110,7 @@ class Service:
             log.exception("a request failed")
             return say(500, "500: something failed here; the program's log says what.")
 
-    def _judge(self, request: web.Request) -> Refusal | None:
+    def _judge(self, request: web.Request) -> Visitor | Refusal:
         headers = request.headers
         refusal = self.gate.check_site(
             headers.getall(hdrs.HOST, []), headers.getall(hdrs.ORIGIN, []), is_websocket(request)
@@ -116,21 +118,26 @@ class Service:
         if refusal is not None:
             return refusal
         if request.path == "/healthz" and is_loopback(request.remote or ""):
-            return None
+            return Visitor.VIEWER
         if self._is_first_visit(request):
             return self.gate.check_token(request.query["token"])
         return self.gate.check_cookie(request.cookies.get(self.gate.cookie_name))
 
     def _is_first_visit(self, request: web.Request) -> bool:
-        asks = self.gate.token is not None and "token" in request.query
+        asks = self.gate.access.operator is not None and "token" in request.query
         return asks and request.path == "/" and not is_websocket(request)
 
-    def _welcome(self, request: web.Request) -> web.Response:
+    def _welcome(self, request: web.Request, visitor: Visitor) -> web.Response:
         """The right token (judged before) becomes a cookie and leaves the address."""
         rest = without_token(request).raw_query_string
         answer = web.Response(status=303, headers={hdrs.LOCATION: f"/?{rest}" if rest else "/"})
         answer.set_cookie(
-            self.gate.cookie_name, self.gate.cookie_value, path="/", httponly=True, samesite="Strict"
+            self.gate.cookie_name,
+            self.gate.cookie_value(visitor),
+            path="/",
+            httponly=True,
+            samesite="Strict",
+            secure=self.gate.access.certificate is not None,
         )
         return answer
 

@@ -6,6 +6,7 @@ import secrets
 import socket
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from types import MappingProxyType
 from typing import Any
 
 import aiohttp
@@ -13,12 +14,17 @@ from aiohttp import hdrs, web
 from yarl import URL
 
 from app.door import bridge, page
+from app.door.access import Visitor
 from app.door.counters import Counters
 from app.door.filter import Rules, admit
 
 MAX_BROWSERS = 64
 PING_SECONDS = 30.0
 SOCKET_BYTES = 128 * 1024
+
+#: Where a judged request says who asks.
+VISITOR = web.RequestKey("visitor", Visitor)
+NO_RULES: Rules = MappingProxyType({})
 
 _PASSED_HEADERS = (hdrs.CONTENT_TYPE, hdrs.CONTENT_ENCODING, hdrs.CONTENT_LENGTH)
 _STARTING = "502: the viewer behind this page does not answer (yet). This page tries again by itself."
@@ -55,7 +61,7 @@ class Upstream:
             html = (await answer.read()).decode()
         nonce = secrets.token_hex(16)
         return web.Response(
-            text=page.dress(html, self.extra_head, nonce),
+            text=page.dress(html, self.extra_head, nonce, request[VISITOR]),
             content_type="text/html",
             headers={"Content-Security-Policy": page.policy(nonce, request.headers[hdrs.HOST])},
         )
@@ -97,12 +103,18 @@ class Upstream:
                 return say(400, "400: this websocket offers no version of the viewer; reload the page.")
             browser = _answer_websocket(viser.protocol)
             await browser.prepare(request)
-            await bridge.join(browser, viser, lambda message: admit(message, self.rules()), self.counters)
+            await bridge.join(browser, viser, self._admit_for(request[VISITOR]), self.counters)
             if transport is not None:
                 transport.abort()  # one that never reads would keep what waits for it
             return browser
         finally:
             await viser.close()
+
+    def _admit_for(self, visitor: Visitor) -> bridge.Admit:
+        """The filter for one browser: to a viewer's, every control is unknown."""
+        if visitor is Visitor.OPERATOR:
+            return lambda message: admit(message, self.rules())
+        return lambda message: admit(message, NO_RULES)
 
     async def _connect(self, request: web.Request, offered: list[str]) -> aiohttp.ClientWebSocketResponse:
         return await self.session.ws_connect(

@@ -8,7 +8,7 @@ import os
 import socket
 import time
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, fields
 from typing import Any
 
 import msgspec
@@ -16,9 +16,11 @@ import pytest
 import viser
 import websockets.sync.client as ws
 
+from app.door.access import Access
 from app.door.front import Door
 from app.motion import GuiRule
 
+ACCESS = {field.name for field in fields(Access)}
 VERSION = f"viser-v{viser.__version__}"
 
 
@@ -98,7 +100,7 @@ def wait() -> Callable[[Callable[[], bool]], None]:
 
 @pytest.fixture
 def open_house() -> Iterator[Callable[..., House]]:
-    """Opens houses that close after the test; arguments are the door's."""
+    """Opens houses that close after the test; arguments are those of the door and of its access."""
     houses: list[House] = []
 
     def build(**more: object) -> House:
@@ -106,9 +108,9 @@ def open_house() -> Iterator[Callable[..., House]]:
         slider = server.gui.add_slider("gain", 0.0, 2.0, 0.01, 1.0)
         name = server.gui.add_text("name", "")
         rules = {slider._impl.uuid: GuiRule("number", 0.0, 2.0), name._impl.uuid: GuiRule("text")}
-        options: dict[str, object] = {"host": "127.0.0.1", "port": 0, "health": lambda: {"samples": 7}}
-        options |= more
-        door = Door(viser_port=server.get_port(), rules=lambda: rules, **options)  # type: ignore[arg-type]
+        access = Access(**{"port": 0} | {name: more.pop(name) for name in ACCESS & set(more)})  # type: ignore[arg-type]
+        options: dict[str, object] = {"health": lambda: {"samples": 7}, **more}
+        door = Door(access, viser_port=server.get_port(), rules=lambda: rules, **options)  # type: ignore[arg-type]
         houses.append(House(server, door, slider, name, rules))
         door.start()
         return houses[-1]

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
+import hashlib
+from dataclasses import replace
+from pathlib import Path
+
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.door.gate import Gate, is_ip, is_loopback, split_host
+from app.door.access import Access, Certificate, Visitor, is_ip
+from app.door.gate import Gate, Refusal, split_host
 
-HOME = Gate("127.0.0.1", 8080)
-HOME_6 = Gate("::1", 8080)
-OPEN = Gate("0.0.0.0", 8080, "secret", frozenset({"labpc", "labpc.local"}))
+HOME = Gate(Access("127.0.0.1", 8080))
+HOME_6 = Gate(Access("::1", 8080))
+LAN = Access("0.0.0.0", 8080, "secret", "look")
+OPEN = Gate(LAN, frozenset({"labpc", "labpc.local"}))
+LOCKED = Gate(replace(LAN, certificate=Certificate(Path("cert.pem"), Path("key.pem"))))
 
 FRIENDS = [
     "127.0.0.1:8080", "localhost:8080", "LOCALHOST:8080", "LocalHost:8080", "[::1]:8080", "127.0.0.9:8080",
@@ -76,7 +83,7 @@ def test_mixed_case_is_the_same_origin() -> None:
 
 
 def test_a_default_port_may_be_left_out() -> None:
-    at_80 = Gate("127.0.0.1", 80)
+    at_80 = Gate(Access("127.0.0.1", 80))
     assert at_80.check_site(["localhost"], ["http://localhost:80"], websocket=True) is None
     assert at_80.check_site(["localhost:80"], ["http://localhost"], websocket=True) is None
     assert at_80.check_site(["localhost"], ["http://localhost:8080"], websocket=True) is not None
@@ -96,34 +103,49 @@ def test_on_a_network_foreign_names_stay_outside(host: str) -> None:
 
 
 @pytest.mark.parametrize("wrong", ["", "Secret", "secret ", "secre", "secrets", "sécret", "\udcff", "\0"])
-def test_only_the_token_opens(wrong: str) -> None:
+def test_only_a_token_opens(wrong: str) -> None:
     for refusal in (OPEN.check_token(wrong), OPEN.check_cookie(wrong)):
-        assert refusal is not None
+        assert isinstance(refusal, Refusal)
         assert (refusal.status, refusal.what) == (401, "token")
         assert "secret" not in refusal.line
-    assert OPEN.check_token("secret") is None
 
 
-def test_the_cookie_follows_from_the_token_and_does_not_tell_it() -> None:
-    assert OPEN.check_cookie(OPEN.cookie_value) is None
-    assert OPEN.check_cookie("secret") is not None
-    assert OPEN.check_token(OPEN.cookie_value) is not None
-    assert OPEN.check_cookie(None) is not None
-    assert Gate("0.0.0.0", 8080, "another").cookie_value != OPEN.cookie_value
-    assert OPEN.cookie_value.isalnum()
+def test_each_token_is_one_visitor_s() -> None:
+    assert OPEN.check_token("secret") is Visitor.OPERATOR
+    assert OPEN.check_token("look") is Visitor.VIEWER
+
+
+@pytest.mark.parametrize("visitor", Visitor)
+def test_the_cookie_follows_from_the_token_and_does_not_tell_it(visitor: Visitor) -> None:
+    cookie = OPEN.cookie_value(visitor)
+    assert OPEN.check_cookie(cookie) is visitor
+    assert isinstance(OPEN.check_token(cookie), Refusal)
+    assert cookie.isalnum()
+    other = Gate(replace(LAN, operator="another", viewer="yet another"))
+    assert isinstance(other.check_cookie(cookie), Refusal)
+
+
+@pytest.mark.parametrize("cookie", [None, "", "secret", "look", hashlib.sha256(b"").hexdigest()])
+def test_what_is_no_cookie_of_ours_stays_outside(cookie: str | None) -> None:
+    assert isinstance(OPEN.check_cookie(cookie), Refusal)
+
+
+@pytest.mark.parametrize("empty", ["", Gate(Access(operator="secret")).cookie_value(Visitor.VIEWER)])
+def test_where_viewers_have_no_token_nobody_is_one(empty: str) -> None:
+    gate = Gate(Access(operator="secret"))
+    assert isinstance(gate.check_token(""), Refusal)
+    assert isinstance(gate.check_cookie(empty), Refusal)
+
+
+def test_with_tls_only_tls_is_the_same_origin() -> None:
+    assert LOCKED.check_site(["labpc.local:8080"], [], websocket=False) is not None  # no name of ours
+    assert LOCKED.check_site(["10.0.0.7:8080"], ["https://10.0.0.7:8080"], websocket=True) is None
+    assert LOCKED.check_site(["10.0.0.7:8080"], ["http://10.0.0.7:8080"], websocket=True) is not None
+    assert LOCKED.cookie_name == "__Host-stridescope-8080"
 
 
 def test_without_a_token_the_door_is_open() -> None:
-    assert HOME.check_cookie(None) is None
-
-
-@pytest.mark.parametrize(
-    ("name", "expected"),
-    [("localhost", True), ("127.0.0.1", True), ("127.9.9.9", True), ("::1", True), ("::ffff:127.0.0.1", True),
-     ("0.0.0.0", False), ("::", False), ("10.0.0.1", False), ("localhost.com", False), ("", False)],
-)  # fmt: skip
-def test_loopback_is_known_by_name(name: str, expected: bool) -> None:
-    assert is_loopback(name) is expected
+    assert HOME.check_cookie(None) is Visitor.OPERATOR
 
 
 @given(st.ip_addresses(), st.integers(0, 65535))

@@ -78,7 +78,7 @@ def test_the_page_works_through_the_door(
     context: BrowserContext, open_house: Callable[..., Any], wait: Callable[..., None]
 ) -> None:
     head = "<style>body{--ours:1}</style><script>window.ours = 1</script>"
-    house = open_house(token="a token", extra_head=head)
+    house = open_house(operator="a token", extra_head=head)
     furnish(house.viser)
     pressed: list[str] = []
     hotkey = house.viser.gui.add_command("Reset heading", hotkey="R")

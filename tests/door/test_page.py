@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 import viser
 
+from app.door.access import Visitor
 from app.door.page import dress, policy
 
 
@@ -24,7 +25,7 @@ def test_every_script_of_viser_s_page_is_marked(index: str) -> None:
 
 def test_nothing_else_of_the_page_changes(index: str) -> None:
     dressed = dress(index, "<i>ours</i>", "n0nce")
-    for ours in ("<i>ours</i>", ' nonce="n0nce"', 'e.nonce="n0nce";'):
+    for ours in (' data-visitor="operator"', "<i>ours</i>", ' nonce="n0nce"', 'e.nonce="n0nce";'):
         dressed = dressed.replace(ours, "")
     assert dressed == index
 
@@ -35,3 +36,7 @@ def test_the_policy_names_the_nonce_and_no_inline_script() -> None:
     assert "'unsafe-inline'" not in directives["script-src"]
     assert directives["default-src"] == directives["frame-ancestors"] == directives["base-uri"] == "'none'"
     assert "ws://127.0.0.1:8080" in directives["connect-src"]
+
+
+def test_the_root_says_who_looks(index: str) -> None:
+    assert dress(index, "", "n0nce", Visitor.VIEWER).count('<html data-visitor="viewer"') == 1

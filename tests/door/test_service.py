@@ -95,7 +95,7 @@ def test_a_failing_health_report_is_logged_and_the_door_stays(
 
 
 def test_the_token_becomes_a_cookie_and_leaves_the_address(open_house: Open) -> None:
-    house = open_house(token="secret-token")
+    house = open_house(operator="secret-token")
     status, headers, _ = house.get("/?fixedDpr=1&token=secret-token")
     assert (status, headers["location"]) == (303, "/?fixedDpr=1")
     assert house.get("/?token=secret-token")[1]["location"] == "/"
@@ -112,7 +112,7 @@ def test_the_token_becomes_a_cookie_and_leaves_the_address(open_house: Open) -> 
     "query", ["", "?token=", "?token=wrong", "?token=secret-token2", "?Token=secret-token"]
 )
 def test_without_the_token_nothing_opens(open_house: Open, query: str) -> None:
-    house = open_house(token="secret-token")
+    house = open_house(operator="secret-token")
     for path in ("/", "/index.html", "/nothing.js"):
         status, headers, body = house.get(path + query)
         assert (status, body.count("\n")) == (401, 1)
@@ -126,7 +126,7 @@ def test_without_the_token_nothing_opens(open_house: Open, query: str) -> None:
     "cookie", ["stridescope-{port}=wrong", "stridescope-{port}=secret-token", "other={value}"]
 )
 def test_a_wrong_cookie_opens_nothing(open_house: Open, cookie: str) -> None:
-    house = open_house(token="secret-token")
+    house = open_house(operator="secret-token")
     value = house.get("/?token=secret-token")[1]["set-cookie"].split(";")[0].partition("=")[2]
     assert house.get("/", Cookie=cookie.format(port=house.port, value=value))[0] == 401
     with pytest.raises(websockets.exceptions.InvalidStatus, match="401"):
@@ -134,25 +134,25 @@ def test_a_wrong_cookie_opens_nothing(open_house: Open, cookie: str) -> None:
 
 
 def test_a_token_in_another_path_gives_no_cookie(open_house: Open) -> None:
-    house = open_house(token="secret-token")
+    house = open_house(operator="secret-token")
     for path in ("/index.html", "/healthz", "//evil.com", "/nothing.js"):
         assert "set-cookie" not in house.get(f"{path}?token=secret-token")[1]
 
 
 def test_an_absolute_address_in_the_request_redirects_nowhere_else(open_house: Open) -> None:
-    house = open_house(token="secret-token")
+    house = open_house(operator="secret-token")
     host = f"127.0.0.1:{house.port}"
     answer = house.say(f"GET http://evil.com/?token=secret-token HTTP/1.1\r\nHost: {host}\r\n\r\n".encode())
     assert "evil" not in answer.recv(4096).decode()
 
 
 def test_health_needs_no_token_on_this_machine(open_house: Open) -> None:
-    assert open_house(token="secret-token").get("/healthz")[0] == 200
+    assert open_house(operator="secret-token").get("/healthz")[0] == 200
 
 
 def test_no_log_line_holds_a_token(open_house: Open, caplog: pytest.LogCaptureFixture) -> None:
     caplog.set_level(logging.DEBUG)
-    house = open_house(token="secret-token")
+    house = open_house(operator="secret-token")
     house.get("/?token=secret-token")
     house.get("/?token=secret-tokem")
     house.get("/?token=secret-token", host="evil.com")

@@ -7,6 +7,7 @@ from contextlib import contextmanager
 
 from playwright.sync_api import Browser, Page
 
+from app.door.access import Access
 from app.door.front import Door
 from app.scene.page import Scene
 
@@ -22,9 +23,7 @@ PATIENCE_MS = 180_000
 @contextmanager
 def door_to(scene: Scene) -> Iterator[str]:
     """A door in front of the scene; its address."""
-    door = Door(
-        host="127.0.0.1", port=0, viser_port=scene.port, rules=scene.rules, health=dict, extra_head=scene.head
-    )
+    door = Door(Access(port=0), viser_port=scene.port, rules=scene.rules, health=dict, extra_head=scene.head)
     door.start()
     try:
         yield door.address
