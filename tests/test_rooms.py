@@ -16,6 +16,7 @@ HEART = {
     "trail",
     "truth",
     "graphs",
+    "clocks",
     "blocks",
     "warm",
     "motion",
