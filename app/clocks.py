@@ -8,11 +8,10 @@ total delay (Moon, Skelly, Towsley 1999). With a line for each sensor all of the
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Sequence
-from typing import NamedTuple, Protocol
+from bisect import bisect_left
+from typing import Protocol
 
-from app.motion import GAP_NS, Ints
+from app.motion import GAP_NS, ClockLine, Ints, SourceInfo
 
 BIN_NS = 500_000_000
 #: Half seconds kept: a crystal's drift is steady for minutes, not for hours.
@@ -24,34 +23,22 @@ TRIAL_BINS = 4
 SAME_NS = 1_500_000
 #: So far below the line no clock drifts in half a second: the host slept, or the device began anew.
 JUMP_NS = 50_000_000
+#: More than this is no clock's drift.
+NO_CRYSTAL = 0.02
 
 
-class Line(NamedTuple):
-    """Where the device's clock showed ``device_ns`` the host's showed ``host_ns``, and how they part."""
-
-    device_ns: int
-    host_ns: int
-    slope: float = 0.0  # host seconds gained on each device second
-
-    def host(self, device_ns: int) -> int:
-        """A device stamp on the host's clock, as if nothing had been delayed more than the least."""
-        passed = device_ns - self.device_ns
-        return self.host_ns + passed + round(passed * self.slope)
-
-    @property
-    def drift_ppm(self) -> float:
-        """How much too fast the device's clock runs; negative: too slow."""
-        return (1.0 / (1.0 + self.slope) - 1.0) * 1e6
-
-
-SAME = Line(0, 0)
+SAME = ClockLine(0, 0)
+Point = tuple[int, int]
 
 
 class Clock(Protocol):
     """What a sensor's store needs of its clock."""
 
-    line: Line
-    settled: bool  # whether the drift is known
+    line: ClockLine
+
+    @property
+    def settled(self) -> bool:
+        """Whether the drift is known."""
 
     def add(self, device_ns: int, host_ns: int) -> None:
         """A sample and when it arrived."""
@@ -60,9 +47,13 @@ class Clock(Protocol):
 class KnownClock:
     """A recording's clock: its line is known, arrivals of a replay say nothing."""
 
-    def __init__(self, line: Line = SAME) -> None:
+    def __init__(self, line: ClockLine = SAME) -> None:
         self.line = line
-        self.settled = line != SAME
+
+    @property
+    def settled(self) -> bool:
+        """Whether it was recorded."""
+        return self.line.slope != 0.0
 
     def add(self, device_ns: int, host_ns: int) -> None:
         """Nothing to learn."""
@@ -74,8 +65,8 @@ class LiveClock:
     def __init__(self) -> None:
         self.line = SAME
         self.segments = 0  # times the clock began anew
-        self._bins: deque[tuple[int, int]] = deque(maxlen=BINS)  # device, host − device
-        self._before: deque[tuple[int, int]] | None = None  # on trial after a gap
+        self._bins = Hull()
+        self._before: Hull | None = None  # of before a gap, on trial
         self._least: tuple[int, int] | None = None  # of the bin under way
         self._end_ns = 0  # of that bin
         self._last_ns = 0
@@ -84,7 +75,7 @@ class LiveClock:
     def settled(self) -> bool:
         """Whether the drift is told from the samples and not merely assumed."""
         bins = self._bins if self._before is None else self._before
-        return len(bins) > 1 and bins[-1][0] - bins[0][0] >= SETTLED_NS
+        return bins.span_ns >= SETTLED_NS
 
     def add(self, device_ns: int, host_ns: int) -> None:
         """A sample and when it arrived."""
@@ -95,7 +86,7 @@ class LiveClock:
         elif not 0 <= step_ns <= GAP_NS or below_ns > JUMP_NS:
             self._interrupt(device_ns, host_ns)
         elif below_ns > 0:
-            self.line = Line(device_ns, host_ns, self.line.slope)
+            self.line = ClockLine(device_ns, host_ns, self.line.slope)
         if device_ns >= self._end_ns:
             self._close(device_ns)
         delay_ns = host_ns - device_ns
@@ -103,16 +94,16 @@ class LiveClock:
             self._least = (device_ns, delay_ns)
 
     def _begin(self, device_ns: int, host_ns: int, drift: float) -> None:
-        self.line = Line(device_ns, host_ns, drift)
-        self._bins.clear()
+        self.line = ClockLine(device_ns, host_ns, drift)
+        self._bins = Hull()
         self._least, self._end_ns = None, device_ns + BIN_NS
 
     def _interrupt(self, device_ns: int, host_ns: int) -> None:
         """A gap: the same clock goes on, or a device that began anew; some bins will tell."""
         if self._least is not None:
-            self._bins.append(self._least)
-        if self._before is None and self._bins:
-            self._before = self._bins.copy()
+            self._bins.add(self._least)
+        if self._before is None and self._bins.points:
+            self._before = self._bins
         near = abs(self.line.host(device_ns) - host_ns) <= JUMP_NS
         line = self.line
         self._begin(device_ns, host_ns, self.line.slope)
@@ -122,54 +113,84 @@ class LiveClock:
     def _close(self, device_ns: int) -> None:
         """The bin is full: its least delayed sample joins the others, and the line is drawn anew."""
         if self._least is not None:
-            self._bins.append(self._least)
+            self._bins.add(self._least)
         self._least, self._end_ns = None, max(self._end_ns + BIN_NS, device_ns + 1)
-        if self._before is not None and len(self._bins) >= TRIAL_BINS:
+        if self._before is not None and len(self._bins.points) >= TRIAL_BINS:
             self._judge(self._before)
-        self.line = lower_line(self._bins, self.line.slope) if self._before is None else self.line
+        if self._before is None:
+            self.line = self._bins.line(self.line.slope)
 
-    def _judge(self, before: deque[tuple[int, int]]) -> None:
+    def _judge(self, before: Hull) -> None:
         """Whether the bins since the gap lie on the line of those before it."""
-        line = lower_line(before, self.line.slope)
-        if abs(min(device + delay - line.host(device) for device, delay in self._bins)) <= SAME_NS:
-            self._bins.extendleft(reversed(list(before)[-BINS + len(self._bins) :]))
-        else:
+        line = before.line(self.line.slope)
+        since, self._before = self._bins.points, None
+        if abs(min(device + delay - line.host(device) for device, delay in since)) > SAME_NS:
             self.segments += 1
-        self._before = None
+            return
+        for point in since:
+            before.add(point)
+        self._bins = before
 
 
-def lower_line(points: Sequence[tuple[int, int]], known: float) -> Line:
-    """The line under points of (device, host − device) ns, in the order of the device's time.
+class Hull:
+    """Points of (device, host − device) ns in the device's order, and the lower edge of them.
 
-    Over less than ``SETTLED_NS`` the slope ``known`` is kept, and only the offset is told.
+    A point costs O(1), amortised: the hull grows at its end, and is made anew when the oldest go.
     """
-    first_ns, last_ns = points[0][0], points[-1][0]
-    if last_ns - first_ns < SETTLED_NS:
-        device, delay = min(points, key=lambda point: point[1] - (point[0] - first_ns) * known)
-        return Line(device, device + delay, known)
-    middle_ns = sum(device for device, _ in points) // len(points)
-    hull = _lower_hull(points)
-    right = next(i for i in range(1, len(hull)) if hull[i][0] >= middle_ns)
-    (device, delay), (device_2, delay_2) = hull[right - 1], hull[right]
-    return Line(device, device + delay, (delay_2 - delay) / (device_2 - device))
 
+    def __init__(self) -> None:
+        self.points: list[Point] = []
+        self._edge: list[Point] = []
 
-def _lower_hull(points: Sequence[tuple[int, int]]) -> list[tuple[int, int]]:
-    """The lower convex hull, left to right (Andrew's monotone chain)."""
-    hull: list[tuple[int, int]] = []
-    for x, y in points:
-        while len(hull) > 1:
-            (x0, y0), (x1, y1) = hull[-2], hull[-1]
+    @property
+    def span_ns(self) -> int:
+        """From the first point to the last."""
+        return self.points[-1][0] - self.points[0][0] if self.points else 0
+
+    def add(self, point: Point) -> None:
+        """One more, later than all before; over ``BINS`` and a quarter the oldest quarter goes."""
+        self.points.append(point)
+        self._extend(point)
+        if len(self.points) > BINS + BINS // 4:
+            del self.points[: BINS // 4]
+            self._edge.clear()
+            for kept in self.points:
+                self._extend(kept)
+
+    def _extend(self, point: Point) -> None:
+        """Andrew's monotone chain: whatever lies above the new edge is none of it."""
+        edge, (x, y) = self._edge, point
+        while len(edge) > 1:
+            (x0, y0), (x1, y1) = edge[-2], edge[-1]
             if (x1 - x0) * (y - y0) > (x - x0) * (y1 - y0):
                 break
-            hull.pop()
-        hull.append((x, y))
-    return hull
+            edge.pop()
+        edge.append(point)
+
+    def line(self, known: float) -> ClockLine:
+        """The line under all points. Over less than ``SETTLED_NS`` the slope ``known`` is kept."""
+        first_ns = self.points[0][0]
+        if self.span_ns < SETTLED_NS:
+            device, delay = min(self.points, key=lambda point: point[1] - (point[0] - first_ns) * known)
+            return ClockLine(device, device + delay, known)
+        right = bisect_left(self._edge, (first_ns + self.span_ns // 2, 0))
+        (device, delay), (device_2, delay_2) = self._edge[right - 1], self._edge[right]
+        return ClockLine(device, device + delay, (delay_2 - delay) / (device_2 - device))
 
 
-def recorded_line(device_ns: Ints, host_ns: Ints) -> Line:
-    """The line of a whole recording's stamps [n], both int64."""
+def recorded_line(device_ns: Ints, host_ns: Ints) -> ClockLine:
+    """The line of a whole recording's stamps [n], both int64.
+
+    One that no crystal could draw (a replay at another speed was recorded) tells only the beginning.
+    """
     clock = LiveClock()
     for device, host in zip(device_ns.tolist(), host_ns.tolist(), strict=True):
         clock.add(device, host)
+    if abs(clock.line.slope) > NO_CRYSTAL:
+        return ClockLine(int(device_ns[0]), int(host_ns[0]))
     return clock.line
+
+
+def clock_for(info: SourceInfo, sensor: str) -> Clock:
+    """The clock of one of a source's sensors: learnt from a live one, known of a recording."""
+    return LiveClock() if info.duration_s is None else KnownClock(info.clocks.get(sensor, SAME))

@@ -27,8 +27,9 @@ def graph_of(store: SensorStore, foot: FootTrack) -> Graph:
         values.append(piece[offset::stride])
         times.append(block[place + offset : place + len(piece) : stride, 0] * 1e-9)
     table = np.concatenate(values)
+    begin_s, second_s = store.shared_s(0.0), 1.0 + store.clock.line.slope
     return Graph(
-        t_s=np.concatenate(times),
+        t_s=begin_s + second_s * np.concatenate(times),
         statistic=table[:, RowColumn.STATISTIC].copy(),
         swing=table[:, RowColumn.PHASE].copy(),
         speed_mps=np.linalg.norm(table[:, VELOCITY], axis=1),

@@ -135,6 +135,24 @@ class Samples:
         return 1e9 / float(np.median(np.diff(self.matrix[:, 0]))) if len(self) > 1 else 0.0
 
 
+class ClockLine(NamedTuple):
+    """Where a sensor's clock showed ``device_ns`` the host's showed ``host_ns``, and how they part."""
+
+    device_ns: int
+    host_ns: int
+    slope: float = 0.0  # host seconds gained on each second of the sensor's
+
+    def host(self, device_ns: int) -> int:
+        """A stamp on the host's clock, as if no sample had been delayed more than the least delayed."""
+        passed = device_ns - self.device_ns
+        return self.host_ns + passed + round(passed * self.slope)
+
+    @property
+    def drift_ppm(self) -> float:
+        """How much too fast the sensor's clock runs; negative: too slow."""
+        return (1.0 / (1.0 + self.slope) - 1.0) * 1e6
+
+
 @dataclass(frozen=True)
 class Journal:
     """How a recording of ours came to be: the order in which samples and orders were taken.
@@ -168,6 +186,7 @@ class Recording:
     spec: str | None = None
     dropped_rows: int = 0
     journal: Journal | None = None  # a recording of ours
+    clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # by sensor; none: one clock stamped all
 
     @property
     def duration_s(self) -> float:
@@ -196,6 +215,7 @@ class SourceInfo:
     dropped: Mapping[str, int] = field(default_factory=dict)
     duration_s: float | None = None  # None: live, no end known
     truth: Truth | None = None
+    clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # a recording's, by sensor
 
 
 class InputError(ValueError):
@@ -434,14 +454,43 @@ class Graph(NamedTuple):
     height_m: Floats
 
 
+class Light(StrEnum):
+    """How sound a sensor's stream is; the value is the word that stands beside the colour."""
+
+    GREEN = "good"
+    AMBER = "check"
+    RED = "bad"
+
+
+class Recent(NamedTuple):
+    """One sensor over the last ten seconds. None: not known, or there is nothing to tell it from."""
+
+    rate_hz: float
+    samples: int
+    lost: int  # missing between stamps
+    duplicated: int
+    rejected: int  # not finite, or out of order
+    saturated: int
+    jitter_ms: float | None  # standard deviation of the arrival's delay
+    late_ms: float | None  # the longest delay, over the least
+    stance_mps2: float | None  # how far |specific force| scatters while the foot stands
+    gravity_mps2: float | None  # |specific force| while the foot stands
+    disturbance: float | None  # how far the field's strength strays from that of the start, 0.1 = 10 %
+    drift_ppm: float | None  # the sensor's clock against the host's, positive: too fast
+    silent_s: float  # behind the sensor that came last
+
+
 class Health(NamedTuple):
-    """Counters of one sensor since the start."""
+    """Counters of one sensor since the start, its last ten seconds, and what they come to."""
 
     rate_hz: float
     taken: int
     dropped: Mapping[str, int]  # reason in words → samples
     saturated: int
     segments: int
+    recent: Recent | None = None
+    light: Light = Light.GREEN
+    reason: str = ""  # what is wrong and what to do, in words; empty where all is well
 
 
 class Trust(NamedTuple):

@@ -25,10 +25,12 @@ import numpy as np
 
 from app import motion as m
 from app import profiles
+from app.clocks import Clock, clock_for
 from app.door.access import Access
 from app.door.front import Door
 from app.estimator import sweep as gains
 from app.formats.journal import Start
+from app.health import report
 from app.outputs.recorder import Recorder
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
@@ -79,7 +81,7 @@ class Viewer:
         self._options = options
         self._source = source
         settings = source.settings or options.settings
-        self._session = Session(settings, self._role, source.info.truth, options.budget_bytes)
+        self._session = Session(settings, self._role, source.info.truth, options.budget_bytes, self._clock)
         self._recorder: Recorder | None = None
         self._posed_s = 0.0
         self._strides: dict[str, tuple[int, int]] = {}  # epoch and number of the last stride recorded
@@ -89,6 +91,7 @@ class Viewer:
         self._fresh = asyncio.Event()  # there is something that no frame has shown
         # two for a search, one so that a slider never waits for it
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
+        self._seen: m.Snapshot | None = None  # the newest that was drawn
         self._status = m.Status(source.info, source.link, profiles=profiles.names())
         self._message_until = 0.0
         self._last_sample_s = time.monotonic()
@@ -185,6 +188,9 @@ class Viewer:
 
     def _role(self, sensor: str) -> m.Role:
         return self._source.info.sensors.get(sensor) or m.role_of(sensor)
+
+    def _clock(self, sensor: str) -> Clock:
+        return clock_for(self._source.info, sensor)
 
     async def _obey(self) -> None:
         while True:
@@ -336,7 +342,7 @@ class Viewer:
                 async with asyncio.timeout(2 * EARLY_S):
                     await self._fresh.wait()
             try:
-                snapshot = self._session.snapshot()
+                snapshot = self._seen = self._session.snapshot()
                 self._record_walk(snapshot.main.feet)
                 scene.draw(snapshot, self._status_now())
             except Exception:
@@ -370,7 +376,8 @@ class Viewer:
 
     def _health(self) -> dict[str, object]:
         """For /healthz; read on the door's thread, so only what is one read."""
-        return {"link": self._source.link.value, "taken": self._session.number}
+        told: dict[str, object] = {"link": self._source.link.value, "taken": self._session.number}
+        return told | {"sensors": report(self._seen.health) if self._seen else {}}
 
 
 def reestimated(job: Reestimation) -> Track:

@@ -13,7 +13,9 @@ from dataclasses import replace
 
 from app import motion as m
 from app.blocks import BLOCK
+from app.clocks import Clock, KnownClock, LiveClock
 from app.graphs import graph_of
+from app.health import Monitor, judge
 from app.rotation import yaw_of
 from app.settings import Settings
 from app.tracks import Reestimation, SensorStore, Track
@@ -37,8 +39,12 @@ class Session:
         roles: Callable[[str], m.Role] = m.role_of,
         truth: m.Truth | None = None,
         budget_bytes: int = DEFAULT_BUDGET,
+        clock: Callable[[str], Clock] = lambda _: KnownClock(),
     ) -> None:
-        """``truth`` is a simulator's; over ``budget_bytes`` the oldest samples go."""
+        """``truth`` is a simulator's; over ``budget_bytes`` the oldest samples go.
+
+        ``clock`` gives each sensor's: times that are shown are on the one they share; the estimate's are not.
+        """
         self.number = 0
         self.epoch = 0
         self.wanted: Reestimation | None = None
@@ -50,6 +56,10 @@ class Session:
         self.candidate: Track | None = None
         self._roles = roles
         self._truth = truth
+        self._clock = clock
+        self._clocks: dict[str, Clock] = {}  # what is known of a clock outlives a walk
+        self._monitors: dict[str, Monitor] = {}
+        self._origin_ns: int | None = None
         self._budget = budget_bytes
         self._apply_at_once = False
         self._undo: list[Settings] = []
@@ -65,16 +75,27 @@ class Session:
     def take(self, sample: m.Sample) -> None:
         """One sample: kept, or dropped and counted; every track moves on."""
         self.number += 1
-        store = self.stores.get(sample.sensor)
-        if store is None:
-            store = self.stores[sample.sensor] = SensorStore(sample.sensor, self._roles(sample.sensor))
+        store = self.stores.get(sample.sensor) or self._open(sample.sensor)
+        monitor = self._monitors[sample.sensor]
         if not store.take(sample):
+            monitor.add(sample, False, m.GaitPhase.STANCE)
             return
+        if store.origin_ns is None:
+            self._origin_ns = self._origin_ns or store.clock.line.host(sample.device_ns)
+            store.origin_ns = self._origin_ns
         self.main.advance(sample.sensor, store.samples)
+        monitor.add(sample, True, self.main.feet[sample.sensor].phase)
         if self.candidate is not None:
             self.candidate.advance(sample.sensor, store.samples)
         if store.samples.end % BLOCK == 1:
             self._keep_budget()
+
+    def _open(self, sensor: str) -> SensorStore:
+        """The store of a sensor not seen before."""
+        clock = self._clocks.setdefault(sensor, self._clock(sensor))
+        store = self.stores[sensor] = SensorStore(sensor, self._roles(sensor), clock)
+        self._monitors[sensor] = Monitor(clock)
+        return store
 
     def apply(self, order: m.Order) -> None:
         """One order; it takes effect after the samples taken so far. An impossible one is ``InputError``."""
@@ -260,7 +281,7 @@ class Session:
         coming, shown = self._coming, self.candidate_settings
         self._note(m.Change(self.number, order.host_ns, order.who, "restarted here"))
         self.epoch += 1
-        self.stores, self._frozen, self._true = {}, {}, {}
+        self.stores, self._frozen, self._true, self._origin_ns = {}, {}, {}, None
         self.wanted, self._next, self.candidate = None, None, None
         self.main = Track(f"main{self.epoch}", self.main.settings)
         if coming is not None:
@@ -295,9 +316,10 @@ class Session:
         """What the page needs, now. Its cost does not grow with the walk."""
         stores = self.stores
         true = self._look_at_truth()
+        now_s = max((s.shared_s(s.elapsed_s) for s in stores.values()), default=0.0)
         return m.Snapshot(
             number=self.number,
-            t_s=max((s.elapsed_s for s in stores.values()), default=0.0),
+            t_s=now_s,
             main=self.main.view(stores, true),
             candidate=self.candidate.view(stores, true) if self.candidate else None,
             truth={name: walk.trail() for name, walk in self._true.items()},
@@ -309,7 +331,7 @@ class Session:
             slot_now=self._slot_now,
             changes=tuple(self.changes[-20:]),
             graphs={name: graph_of(stores[name], foot) for name, foot in self.main.feet.items()},
-            health={name: self._health(name, store) for name, store in stores.items()},
+            health={name: self._health(name, store, now_s) for name, store in stores.items()},
             hindsight_from_s=max(
                 (s.time_ns(s.samples.start) * 1e-9 for s in stores.values() if s.samples), default=0.0
             ),
@@ -329,7 +351,11 @@ class Session:
             places[sensor] = self._true[sensor].look(row, elapsed_s, self.main.settings)
         return places
 
-    def _health(self, sensor: str, store: SensorStore) -> m.Health:
+    def _health(self, sensor: str, store: SensorStore, now_s: float) -> m.Health:
         foot = self.main.feet.get(sensor)
         segments = 1 + len(foot.tracker.segments) if foot else 0
-        return m.Health(store.rate_hz(), store.samples.end, dict(store.dropped), store.saturated, segments)
+        behind_s = now_s - store.shared_s(store.elapsed_s)
+        recent = self._monitors[sensor].recent(behind_s, live=isinstance(store.clock, LiveClock))
+        light, reason = judge(store.role, recent, self.main.settings.magnetometer)
+        counts = (store.samples.end, dict(store.dropped), store.saturated, segments)
+        return m.Health(store.rate_hz(), *counts, recent, light, reason)

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.blocks import BLOCK, Blocks
+from app.clocks import Clock, KnownClock
 from app.estimator.tracker import Checkpoint, Tracker
 from app.motion import (
     POSITION,
@@ -20,6 +21,7 @@ from app.motion import (
     FootView,
     GaitPhase,
     Role,
+    RowColumn,
     Sample,
     TrackView,
     Trail,
@@ -41,9 +43,11 @@ STANDING = 1.3
 class SensorStore:
     """The samples of one sensor: what every track reads. Intake drops what cannot be used, and counts."""
 
-    def __init__(self, sensor: str, role: Role) -> None:
+    def __init__(self, sensor: str, role: Role, clock: Clock | None = None) -> None:
         self.sensor = sensor
         self.role = role
+        self.clock: Clock = clock or KnownClock()
+        self.origin_ns: int | None = None  # of the walk, on the clock that all sensors share
         self.samples = Blocks(SAMPLE_WIDTH)
         self.clocks = Blocks(2)  # host_ns, saturation
         self.dropped: dict[str, int] = {}
@@ -62,6 +66,7 @@ class SensorStore:
             same = sample.device_ns == self._last_ns
             return self._drop("repeated time" if same else "time went backward")
         self._last_ns = sample.device_ns
+        self.clock.add(sample.device_ns, sample.host_ns)
         self.samples.grow(1)
         block, place = self.samples.block(self.samples.end - 1)
         block[place] = (sample.device_ns - self._first_ns, *force, *rate, *_field_or_none(field))
@@ -79,6 +84,12 @@ class SensorStore:
     def elapsed_s(self) -> float:
         """Seconds from the first sample to the last."""
         return (self._last_ns - self._first_ns) * 1e-9
+
+    def shared_s(self, elapsed_s: float) -> float:
+        """Seconds since this sensor's first sample, in those of the clock that all sensors share."""
+        origin_ns = self._first_ns if self.origin_ns is None else self.origin_ns
+        line = self.clock.line
+        return (line.host(self._first_ns) - origin_ns) * 1e-9 + elapsed_s * (1.0 + line.slope)
 
     def rate_hz(self, over: int = 100) -> float:
         """Samples a second over the last ``over`` samples; 0 with fewer than two."""
@@ -129,6 +140,12 @@ class FootTrack:
     def advance(self, store: Blocks) -> None:
         """Take the samples that are new."""
         self.tracker.advance(store)
+
+    @property
+    def phase(self) -> GaitPhase:
+        """Of the newest row."""
+        block, place = self.tracker.rows.block(self.tracker.rows.end - 1)
+        return GaitPhase.SWING if block[place, RowColumn.PHASE] else GaitPhase.STANCE
 
     def settle(self) -> None:
         """Bring the trail up to the swing under way (when somebody looks, not for every sample)."""

@@ -17,6 +17,7 @@ HEART = {
     "truth",
     "graphs",
     "clocks",
+    "health",
     "blocks",
     "warm",
     "motion",

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from app.clocks import recorded_line
 from app.formats import cdr, journal, keeping, mcap
 from app.formats.clean import countable
 from app.formats.gathering import Contents, Doubles, Gathered, gather
@@ -217,7 +218,7 @@ def recording_of(name: str, found: Kept) -> Recording:
     """The last walk of a file: what came since its source last began anew."""
     begin = _last_begin(found)
     raws = [(readings, readings.place >= begin) for readings in found.readings]
-    sensors, places, hosts = [], [], []
+    sensors, places, hosts, clocks = [], [], [], {}
     for readings, here in raws:
         rows, dropped = countable(_raw(readings, here))
         if len(rows):
@@ -225,6 +226,7 @@ def recording_of(name: str, found: Kept) -> Recording:
             sensors.append(_columns(readings, rows, dropped))
             places.append(readings.place[rows])
             hosts.append(int(readings.host_ns[rows[0]]))
+            clocks[readings.sensor] = recorded_line(readings.device_ns[rows], readings.host_ns[rows])
     if not sensors:
         raise InputError(f"{name}: a recording without one usable sample, expected samples")
     return Recording(
@@ -235,6 +237,7 @@ def recording_of(name: str, found: Kept) -> Recording:
         spec=_text(found.about.get("spec")),
         dropped_rows=sum(sum(samples.dropped.values()) for samples in sensors),
         journal=_journal(found, begin, sensors, places, hosts),
+        clocks=clocks,
     )
 
 

@@ -15,6 +15,7 @@ from app.scene.hindsight import CandidateBox, GainSearch
 from app.scene.profiles import Profiles
 from app.scene.recording import MARKER, TOGGLE, Recording, banner
 from app.scene.replaying import Replaying
+from app.scene.soundness import Soundness, tables
 from app.scene.tuning import Tuning
 
 WIDTH_PX = 400
@@ -45,6 +46,7 @@ class Panel:
         gui.main_panel.dock_right()
         gui.main_panel.set_width(WIDTH_PX)
         self._header, self._message, self._feet = controls.html(), controls.html(), controls.html()
+        self._soundness = Soundness(controls)
         self._replaying = Replaying(controls)
         tabs = gui.add_tab_group()
         with tabs.add_tab("Tune"):
@@ -111,7 +113,8 @@ class Panel:
         self._header.show(figures.header(status))
         self._message.show(banner(status) + figures.message(snapshot, status))
         self._feet.show(figures.feet(snapshot))
-        self._source.show(figures.source(snapshot, status))
+        self._soundness.show(snapshot, status)
+        self._source.show(figures.source(snapshot, status) + tables(snapshot))
         self._log.show(figures.log(snapshot, _rate(snapshot, status)))
         self._replaying.show(status)
         self._recording.show(status)

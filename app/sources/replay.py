@@ -311,6 +311,7 @@ def source_info(recording: Recording, truth: Truth | None = None) -> SourceInfo:
         dropped=dropped,
         duration_s=recording.duration_s,
         truth=truth,
+        clocks=recording.clocks,
     )
 
 
