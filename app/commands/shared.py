@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import argparse
+import datetime
 import os
 import sys
 from pathlib import Path
 from typing import NoReturn, Protocol
 
 from app import profiles
-from app.door.access import Access, is_loopback, made_token
+from app.door.access import Access, Certificate, is_loopback, made_token
+from app.door.addresses import everything
 from app.motion import InputError
 from app.settings import Settings, parse
 
@@ -78,6 +80,14 @@ def add_door(command: argparse.ArgumentParser) -> None:
     command.add_argument(
         "--with-token", action="store_true", help="make tokens on loopback too: other people use this machine"
     )
+    command.add_argument(
+        "--tls-cert", metavar="FILE", type=Path, help="speak https with this PEM certificate"
+    )
+    command.add_argument("--tls-key", metavar="FILE", type=Path, help="its key, without a password")
+    command.add_argument(
+        "--tls-made", action="store_true",
+        help="speak https with a certificate made here (phones give their sensors to https only)",
+    )  # fmt: skip
     command.add_argument("--no-open", action="store_true", help="do not open a browser")
 
 
@@ -87,7 +97,21 @@ def door_options(options: argparse.Namespace) -> Access:
     viewer = _token(options.viewer_token_file, "--viewer-token-file", "STRIDESCOPE_VIEWER_TOKEN")
     if operator or viewer or options.with_token or not is_loopback(options.host):
         operator, viewer = operator or made_token(), viewer or made_token()
-    return Access(options.host, options.port, operator, viewer)
+    return Access(options.host, options.port, operator, viewer, _certificate(options))
+
+
+def _certificate(options: argparse.Namespace) -> Certificate | None:
+    chain, key = options.tls_cert, options.tls_key
+    if (chain is None) != (key is None):
+        raise InputError("--tls-cert and --tls-key: expected both or neither")
+    if chain is not None and options.tls_made:
+        raise InputError("--tls-made: a certificate was given as well, expected one of them")
+    if options.tls_made:
+        from app.door import selfmade  # only who wants it waits for it
+
+        now = datetime.datetime.now(datetime.UTC)
+        return selfmade.made(profiles.folder().parent / "tls", everything(options.host), now)
+    return None if chain is None else Certificate(chain, key)
 
 
 def tell(line: str) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import logging
 import socket
+import ssl
 from collections.abc import Awaitable, Callable, Mapping
 from dataclasses import dataclass
 
@@ -17,15 +18,13 @@ from app.door.access import Visitor, is_loopback
 from app.door.counters import Counters
 from app.door.filter import Rules
 from app.door.gate import Gate, Refusal
+from app.door.listening import HEAD_SECONDS, Reception
 from app.door.upstream import VISITOR, Upstream, is_websocket, open_session, say, say_starting, without_token
 
 log = logging.getLogger(__name__)
 # aiohttp would log the first line of a request that it cannot read, token and all.
 _silent = logging.getLogger(f"{__name__}.aiohttp")
 _silent.setLevel(logging.CRITICAL + 1)
-
-MAX_SOCKETS = 256
-IDLE_SECONDS = 15.0
 
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
@@ -41,7 +40,13 @@ class Service:
     extra_head: str
     counters: Counters
 
-    async def run(self, listener: socket.socket, stopping: asyncio.Event, ready: Callable[[], None]) -> None:
+    async def run(
+        self,
+        listener: socket.socket,
+        secure: ssl.SSLContext | None,
+        stopping: asyncio.Event,
+        ready: Callable[[], None],
+    ) -> None:
         """Serve on ``listener`` until ``stopping`` is set; then drop every connection."""
         async with open_session() as session:
             upstream = Upstream(session, self.viser_port, self.rules, self.extra_head, self.counters)
@@ -50,19 +55,18 @@ class Service:
                 access_log=None,
                 logger=_silent,
                 handler_cancellation=True,
-                keepalive_timeout=IDLE_SECONDS,
+                keepalive_timeout=HEAD_SECONDS,
                 lingering_time=0,
                 shutdown_timeout=0.2,
             )
             await runner.setup()
             assert runner.server is not None
-            accepting = asyncio.create_task(self._accept(listener, runner.server))
+            reception = Reception(runner.server, self.counters, secure)
+            accepting = asyncio.create_task(reception.accept(listener))
             ready()
             await stopping.wait()
             accepting.cancel()
-            for connection in runner.server.connections:
-                if connection.transport is not None:
-                    connection.transport.abort()
+            reception.drop_all()
             await runner.cleanup()
 
     def _application(self, upstream: Upstream) -> web.Application:
@@ -73,22 +77,6 @@ class Service:
         application.router.add_get("/index.html", upstream.give_page)
         application.router.add_get("/{path:.*}", upstream.give_file)
         return application
-
-    async def _accept(self, listener: socket.socket, server: web.Server) -> None:
-        """Take connections one by one, so that their number is known before the next is taken."""
-        loop = asyncio.get_running_loop()
-        while True:
-            try:
-                connection, _ = await loop.sock_accept(listener)
-            except OSError as error:  # out of file handles, or the caller has gone already
-                log.warning("a connection could not be taken: %s", error)
-                await asyncio.sleep(0.1)
-                continue
-            if len(server.connections) < MAX_SOCKETS:
-                await loop.connect_accepted_socket(server, connection)
-            else:
-                connection.close()
-                self.counters.refuse("full")
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:

@@ -12,7 +12,7 @@ from typing import Any
 import pytest
 import websockets.exceptions
 
-from app.door import service, upstream
+from app.door import listening, upstream
 
 Open = Callable[..., Any]
 EVIL_HOSTS = [
@@ -182,7 +182,7 @@ def test_browsers_are_counted_and_bounded(
 def test_idle_sockets_are_bounded(
     house: Any, wait: Callable[..., None], monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(service, "MAX_SOCKETS", 20)
+    monkeypatch.setattr(listening, "MAX_SOCKETS", 20)
     held = [house.say(b"GET / HT") for _ in range(100)]
     wait(lambda: house.door.counters.refused_full == 80)
     for connection in held:
