@@ -1,4 +1,4 @@
-"""The options of the public port: tokens where others could come in, certificates, one line for a wrong wish."""
+"""The options of the public port: tokens where others could come in, and certificates."""
 
 from __future__ import annotations
 
