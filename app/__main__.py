@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.commands import export, gestures, info, process, record, recover, study, walk
+from app.commands import export, forward, gestures, info, process, record, recover, study, walk
 from app.commands.shared import Parser
 from app.motion import InputError
 
@@ -18,6 +18,7 @@ COMMANDS = {
     "recover": recover,
     "info": info,
     "export": export,
+    "forward": forward,
     "process": process,
     "gestures": gestures,
     "study": study,

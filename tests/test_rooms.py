@@ -27,7 +27,18 @@ HEART = {
 }
 HEART |= {"estimator", "gestures", "simulate", "formats", "studies"}
 EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed", "workers"}
-SHELL = {"run", "batch", "record", "library", "export", "study", "commands", "__main__", "__init__"}
+SHELL = {
+    "run",
+    "batch",
+    "record",
+    "library",
+    "export",
+    "forward",
+    "study",
+    "commands",
+    "__main__",
+    "__init__",
+}
 CLOCKS_AND_FILES = {"asyncio", "concurrent", "glob", "http", "multiprocessing", "os", "pathlib", "selectors"}
 CLOCKS_AND_FILES |= {"shutil", "socket", "ssl", "subprocess", "tempfile", "threading", "time", "urllib"}
 ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources", "zstandard": "compressed"}

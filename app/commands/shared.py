@@ -93,8 +93,8 @@ def add_door(command: argparse.ArgumentParser) -> None:
 
 def door_options(options: argparse.Namespace) -> Access:
     """Where to listen, and the tokens: given, or made for this run where others could come in."""
-    operator = _token(options.token_file, "--token-file", "STRIDESCOPE_TOKEN")
-    viewer = _token(options.viewer_token_file, "--viewer-token-file", "STRIDESCOPE_VIEWER_TOKEN")
+    operator = token_from(options.token_file, "--token-file", "STRIDESCOPE_TOKEN")
+    viewer = token_from(options.viewer_token_file, "--viewer-token-file", "STRIDESCOPE_VIEWER_TOKEN")
     if operator or viewer or options.with_token or not is_loopback(options.host):
         operator, viewer = operator or made_token(), viewer or made_token()
     return Access(options.host, options.port, operator, viewer, _certificate(options))
@@ -120,7 +120,8 @@ def tell(line: str) -> None:
     print(line.encode(encoding, "ignore").decode(encoding), flush=True)
 
 
-def _token(file: Path | None, option: str, variable: str) -> str | None:
+def token_from(file: Path | None, option: str, variable: str) -> str | None:
+    """The token in a file, else the environment's; None where there is neither."""
     if file is None:
         return os.environ.get(variable) or None
     try:
