@@ -86,6 +86,10 @@ class Monitor:
         if stillest is not None:
             self._stand(now, stillest)
 
+    def skip(self) -> None:
+        """Samples went by unwatched: the next one follows no other."""
+        self._last_ns = None
+
     def _bin(self, second: int) -> Bin:
         if second != self._bins[-1].second:
             while self._bins and not 0 <= second - self._bins[0].second < BINS:

@@ -153,6 +153,30 @@ class ClockLine(NamedTuple):
         return (1.0 / (1.0 + self.slope) - 1.0) * 1e6
 
 
+class Rows(NamedTuple):
+    """Rows ``first`` to ``last`` (exclusive) of a sensor's samples."""
+
+    samples: Samples
+    first: int
+    last: int
+
+
+@dataclass(frozen=True, eq=False)
+class Stretch:
+    """Many samples of a recording at once, as a seek passes over them.
+
+    ``rows`` are in the order in which the sensors come first; ``each`` makes the samples one by one.
+    A sensor's row whose number is a multiple of ``BLOCK`` ends a stretch.
+    """
+
+    rows: tuple[Rows, ...]
+    host_ns: int
+    each: Callable[[], list[Sample]]
+
+    def __len__(self) -> int:
+        return sum(rows.last - rows.first for rows in self.rows)
+
+
 @dataclass(frozen=True)
 class Journal:
     """How a recording of ours came to be: the order in which samples and orders were taken.

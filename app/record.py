@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from app.formats.journal import Start
-from app.motion import InputError, Order, RecorderState, RestartHere
+from app.motion import InputError, Order, RecorderState, RestartHere, Sample
 from app.outputs.recorder import Recorder
 from app.settings import Settings
 from app.sources.opening import open_source
@@ -49,7 +49,7 @@ async def _take(source: Source, recorder: Recorder) -> None:
         if isinstance(item, RestartHere):
             recorder.order(taken, Order(item, "replay", 0))
             recorder.start(Start(Settings(), Settings(), False))
-        elif not isinstance(item, Order):
+        elif isinstance(item, Sample):
             recorder.sample(item)
             while source.replay and recorder.waiting > 10_000:  # as fast as possible is as fast as the disk
                 await asyncio.sleep(0.01)

@@ -49,6 +49,8 @@ EARLY_S = 0.006
 PROFILES_S = 2.0
 #: Where a foot is drawn is recorded this often.
 POSES_S = 0.04
+#: A seek waits while so much waits for the disk.
+MOST_WAITING = 50_000
 #: A message stays this long.
 MESSAGE_S = 8.0
 
@@ -70,7 +72,7 @@ class Options:
 
 def walk(options: Options, tell: Callable[[str], None]) -> None:
     """Serve the walk until Ctrl-C. ``tell`` prints a line. Bad input is ``InputError``."""
-    source = open_source(options.source, changes=not options.told)
+    source = open_source(options.source, changes=not options.told, stretches=True)
     asyncio.run(Viewer(options, source).serve(tell))
 
 
@@ -158,12 +160,24 @@ class Viewer:
                     self._recorder.start(self._start())
             elif isinstance(item, m.Order):
                 self._take_order(item)
+            elif isinstance(item, m.Stretch):
+                await self._take_stretch(item)
             else:
                 self._session.take(item)
                 if self._recorder is not None:
                     self._recorder.sample(item)
                 self._fresh.set()
                 self._last_sample_s = time.monotonic()
+
+    async def _take_stretch(self, stretch: m.Stretch) -> None:
+        self._session.take_stretch(stretch)
+        self._fresh.set()
+        self._last_sample_s = time.monotonic()
+        if self._recorder is not None:
+            for sample in stretch.each():
+                self._recorder.sample(sample)
+            while self._recorder.on and self._recorder.waiting > MOST_WAITING:
+                await asyncio.sleep(0.01)
 
     async def _prepare(self) -> None:
         """Compile in a thread that does not hold up Ctrl-C, and say what is being compiled."""

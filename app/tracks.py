@@ -22,6 +22,7 @@ from app.motion import (
     GaitPhase,
     Role,
     RowColumn,
+    Rows,
     Sample,
     TrackView,
     Trail,
@@ -75,6 +76,19 @@ class SensorStore:
         block[place] = (sample.host_ns, sample.saturation)
         self.saturated += sample.saturation != 0
         return True
+
+    def take_rows(self, rows: Rows, host_ns: int) -> None:
+        """Keep rows of a recording, later than all before: what ``take`` would keep of each."""
+        samples, stretch = rows.samples, slice(rows.first, rows.last)
+        table = samples.matrix[stretch].copy()
+        if not self.samples.end:
+            self._first_ns = samples.device_ns + int(table[0, 0])
+        self._last_ns = samples.device_ns + int(table[-1, 0])
+        table[:, 0] += samples.device_ns - self._first_ns
+        flags = samples.saturation[stretch]
+        self.samples.extend(table)
+        self.clocks.extend(np.column_stack([np.full(len(table), float(host_ns)), flags]))
+        self.saturated += int(np.count_nonzero(flags))
 
     def _drop(self, reason: str) -> bool:
         self.dropped[reason] = self.dropped.get(reason, 0) + 1

@@ -73,6 +73,14 @@ def test_a_sensor_switched_off_for_long_lost_nothing() -> None:
     assert seen(monitor)[0].lost == 0
 
 
+def test_samples_that_went_by_unwatched_are_not_lost() -> None:
+    monitor = watched(stream(20.0))
+    monitor.skip()
+    for sample in stream(5.0, start_ns=23 * 10**9):
+        monitor.add(sample, True, GaitPhase.STANCE)
+    assert seen(monitor)[0].lost == 0
+
+
 def test_samples_twice_and_out_of_order_are_told_apart() -> None:
     monitor = watched(stream(20.0))
     last = list(stream(20.0))[-1]

@@ -91,20 +91,33 @@ def live(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Session]:
     return path, session
 
 
-async def replayed(spec: str, settings: Settings, delay: int, seek_back: bool = False) -> Session:
-    source = open_source(spec, finish=True)
+async def replayed(
+    spec: str, settings: Settings, delay: int, seek_back: bool = False, stretches: bool = False
+) -> Session:
+    source = open_source(spec, finish=True, stretches=stretches)
     session = Session(source.settings or settings)
-    work, taken = Work(session, delay), 0
+    work, taken, skipped = Work(session, delay), 0, 0
     async for item in source:
         if isinstance(item, m.Sample):
             session.take(item)
             taken += 1
             if seek_back and taken == 1250:
                 source.control(m.Seek(0.5))
+            if stretches and taken == 30:  # over all orders but the first, and back, and far ahead
+                source.control(m.Seek(9.0))
+            if stretches and taken == 700:
+                source.control(m.Seek(3.7))
+                source.control(m.Seek(11.0))
+        elif isinstance(item, m.Stretch):
+            assert stretches
+            session.take_stretch(item)
+            taken += len(item)
+            skipped += 1
         else:
             apply(session, item if isinstance(item, m.Order) else m.Order(item, "replay", 0))
         work.do()
     work.do(now=True)
+    assert (skipped > 5) == stretches
     return session
 
 
@@ -129,6 +142,20 @@ def test_a_replay_with_its_changes_repeats_the_walk_to_the_bit(live, delay: int,
     assert_same(session.candidate, again.candidate)
     if delay == 1:  # (the page's list leaves out an apply that the next one overtook)
         assert [c[2:] for c in again.changes] == [c[2:] for c in session.changes]
+
+
+@pytest.mark.parametrize("delay", [1, 3, 1000])
+@pytest.mark.parametrize("watched_s", [0, 1])
+def test_a_walk_that_was_sought_through_is_the_same_walk_to_the_bit(
+    live, delay: int, watched_s: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    path, session = live
+    monkeypatch.setattr("app.sources.replay.WATCHED_NS", watched_s * 10**9)
+    again = asyncio.run(replayed(f"replay:{path}?speed=0", Settings(), delay, stretches=True))
+    assert_same(session.main, again.main)
+    assert session.candidate is not None
+    assert again.candidate is not None
+    assert_same(session.candidate, again.candidate)
 
 
 def test_a_replay_without_its_changes_has_the_settings_told(live) -> None:

@@ -21,18 +21,24 @@ _log = logging.getLogger(__name__)
 _SAME = 1e-6  # m/s², rad/s: another machine's sines differ in the last digits
 
 
-def open_source(spec_text: str, *, finish: bool = False, changes: bool = True) -> Source:
+def open_source(
+    spec_text: str, *, finish: bool = False, changes: bool = True, stretches: bool = False
+) -> Source:
     """The source a SPEC names, at the pace it asks for; ``InputError`` if there is none.
 
     ``finish``: the source ends after the last sample instead of waiting for a seek. ``changes``: a
     recording of ours repeats the changes made to its walk, if the SPEC does not say otherwise.
+    ``stretches``: a long seek gives its samples as ``Stretch``.
     """
     spec = parse_spec(spec_text)
     if spec.kind in LIVE:
         return open_live(spec)
     recording, truth = open_recording(spec)
     changes = changes and spec.changes
-    return Replay(recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes, truth=truth)
+    return Replay(
+        recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes, truth=truth,
+        stretches=stretches,
+    )  # fmt: skip
 
 
 def open_live(spec: Spec) -> Source:

@@ -10,7 +10,8 @@ from __future__ import annotations
 import asyncio
 import math
 import time
-from collections.abc import AsyncIterator
+from bisect import bisect_right
+from collections.abc import AsyncIterator, Sequence
 from typing import Protocol
 
 from app.motion import (
@@ -27,11 +28,13 @@ from app.motion import (
     ReplaceCandidate,
     ReplayCommand,
     RestartHere,
+    Sample,
     Seek,
     SetApplyAtOnce,
     SourceInfo,
     Speed,
     Step,
+    Stretch,
     Truth,
 )
 from app.settings import Settings
@@ -41,6 +44,8 @@ from app.sources.timeline import Timeline
 
 _BURST_NS = 5_000_000  # between wake-ups, and between chances for the rest of the loop
 _CHUNK = 256  # samples made at once
+#: A seek gives the first and the last samples one by one: what watches a stream tells by them.
+WATCHED_NS = 12_000_000_000
 
 
 class Clock(Protocol):
@@ -75,7 +80,8 @@ class Replay:
 
     It yields samples, a recording's own orders between them (unless ``changes`` is off), and
     ``RestartHere`` before it begins anew. At the end it waits for a seek or
-    a loop, unless ``finish`` is set. ``speed`` 0 is as fast as the reader takes them.
+    a loop, unless ``finish`` is set. ``speed`` 0 is as fast as the reader takes them. With ``stretches``
+    a long seek yields ``Stretch`` instead of samples.
     """
 
     def __init__(
@@ -88,6 +94,7 @@ class Replay:
         changes: bool = True,
         truth: Truth | None = None,
         clock: Clock | None = None,
+        stretches: bool = False,
     ) -> None:
         self.recording = recording
         self.replay = True
@@ -103,6 +110,8 @@ class Replay:
         self._timeline = Timeline(recording)
         self._journal = recording.journal if changes else None
         self._orders = orders_by_place(self._journal)
+        self._places = sorted(self._orders)
+        self._stretches = stretches
         self._next = 0  # the first sample not yet released
         self._begun = False  # the playhead waits for the reader
         self._restart = False
@@ -172,12 +181,11 @@ class Replay:
                 for order in opening_orders(self._journal, anew=True):
                     yield order
             now_ns = self._clock.now_ns()
-            last = min(self._due(), self._next + _CHUNK)
-            for sample in self._timeline.cut(self._next, last, now_ns) if last > self._next else ():
+            for item in self._out(now_ns):
                 for order in self._orders.get(self._next, ()):
                     yield order
-                self._next += 1
-                yield sample
+                self._next += len(item) if isinstance(item, Stretch) else 1
+                yield item
                 if self._at_end():
                     for order in self._orders.get(self._next, ()):
                         yield order
@@ -194,6 +202,17 @@ class Replay:
                 return
             await self._rest()
             breath_ns = self._clock.now_ns()
+
+    def _out(self, now_ns: int) -> Sequence[Sample | Stretch]:
+        """Some of what is due: a stretch up to the next order or block where there is far to go."""
+        first, due = self._next, self._due()
+        far = self._timeline.due(self._timeline.elapsed_ns(due - 1) - WATCHED_NS) if due > first else first
+        early = self._timeline.elapsed_ns(min(first, due - 1)) < WATCHED_NS
+        if not self._stretches or self._jump is None or early or far - first <= _CHUNK:
+            return self._timeline.cut(first, min(due, first + _CHUNK), now_ns) if due > first else ()
+        place = bisect_right(self._places, first)
+        order = self._places[place] if place < len(self._places) else far
+        return (self._timeline.stretch(first, min(far, order, self._timeline.block_end(first)), now_ns),)
 
     # --- the playhead ---
 

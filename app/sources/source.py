@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import AsyncIterator
 from typing import Protocol
 
-from app.motion import InputError, Link, Order, ReplayCommand, RestartHere, Sample, SourceInfo
+from app.motion import InputError, Link, Order, ReplayCommand, RestartHere, Sample, SourceInfo, Stretch
 from app.settings import Settings
 
-#: What a source yields. Only a replay yields orders (those recorded) and ``RestartHere``.
-Item = Sample | Order | RestartHere
+#: What a source yields. Only a replay yields orders (those recorded) and ``RestartHere``, and stretches only
+#: to whom asks for them.
+Item = Sample | Order | RestartHere | Stretch
 
 
 class Source(Protocol):

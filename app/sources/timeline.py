@@ -6,7 +6,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from app.motion import Recording, Sample, Samples
+from app.blocks import BLOCK
+from app.motion import Ints, Recording, Rows, Sample, Samples, Stretch
 
 
 class Timeline:
@@ -20,16 +21,12 @@ class Timeline:
         if recording.journal is not None:
             self._elapsed_ns = recording.journal.elapsed_ns
             self._which = recording.journal.arrivals
-            self._row = np.empty(len(self._which), np.int64)
-            for index, samples in enumerate(recording.sensors):
-                self._row[self._which == index] = np.arange(len(samples))
-            return
-        stamps = [samples.device_ns + samples.matrix[:, 0].astype(np.int64) for samples in recording.sensors]
-        merged = np.concatenate(stamps)
-        order = np.argsort(merged, kind="stable")
-        self._elapsed_ns = merged[order] - merged[order[0]]
-        self._which = np.repeat(np.arange(len(stamps)), [len(s) for s in stamps])[order]
-        self._row = np.concatenate([np.arange(len(s)) for s in stamps])[order]
+        else:
+            self._elapsed_ns, self._which = _merged(recording)
+        self._row = np.empty(len(self._which), np.int64)
+        for index, samples in enumerate(recording.sensors):
+            self._row[self._which == index] = np.arange(len(samples))
+        self._begins = np.flatnonzero(self._row % BLOCK == 0)
 
     def __len__(self) -> int:
         return len(self._elapsed_ns)
@@ -53,6 +50,21 @@ class Timeline:
         """How many samples had been taken by then."""
         return int(np.searchsorted(self._elapsed_ns, elapsed_ns, side="right"))
 
+    def block_end(self, first: int) -> int:
+        """Where a stretch from ``first`` on ends at the latest: behind the next first row of a block."""
+        place = int(np.searchsorted(self._begins, first))
+        return int(self._begins[place]) + 1 if place < len(self._begins) else len(self)
+
+    def stretch(self, first: int, last: int, host_ns: int) -> Stretch:
+        """The same samples as ``cut`` gives, in columns."""
+        which, rows = self._which[first:last], self._row[first:last]
+        found, at = np.unique(which, return_index=True)
+        pieces = []
+        for index in found[np.argsort(at)].tolist():
+            own = rows[which == index]
+            pieces.append(Rows(self._sensors[index], int(own[0]), int(own[-1]) + 1))
+        return Stretch(tuple(pieces), host_ns, lambda: self.cut(first, last, host_ns))
+
     def cut(self, first: int, last: int, host_ns: int) -> list[Sample]:
         """Samples ``first`` to ``last`` (exclusive), all said to arrive at ``host_ns``."""
         which, rows = self._which[first:last], self._row[first:last]
@@ -65,6 +77,15 @@ class Timeline:
                 _samples(samples, int(own[0]), int(own[-1]) + 1, host_ns) if len(own) else iter(())
             )
         return [next(streams[index]) for index in which.tolist()]
+
+
+def _merged(recording: Recording) -> tuple[Ints, Ints]:
+    """When each sample was taken, from the first, and which sensor's it is, in the order of their stamps."""
+    stamps = [samples.device_ns + samples.matrix[:, 0].astype(np.int64) for samples in recording.sensors]
+    merged = np.concatenate(stamps)
+    order = np.argsort(merged, kind="stable")
+    which = np.repeat(np.arange(len(stamps)), [len(s) for s in stamps])
+    return merged[order] - merged[order[0]], which[order]
 
 
 def _samples(samples: Samples, first: int, last: int, host_ns: int) -> Iterator[Sample]:
