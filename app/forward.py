@@ -8,7 +8,7 @@ import signal
 from collections.abc import Callable
 from contextlib import suppress
 
-from app.motion import InputError, Order, RestartHere
+from app.motion import InputError, RestartHere, Sample
 from app.outputs.forwarder import Sender, sender_to
 from app.sources.opening import open_source
 from app.sources.source import Source
@@ -55,7 +55,7 @@ async def _read(source: Source, sender: Sender) -> None:
     async for item in source:
         if isinstance(item, RestartHere):
             sender.begin_anew(secrets.randbits(64))
-        elif not isinstance(item, Order):
+        elif isinstance(item, Sample):
             sender.send(item)
             taken += 1
             if taken % _BREATH == 0:
