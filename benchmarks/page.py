@@ -38,7 +38,6 @@ WATCH = """(node) => {
       const p = o.position, q = o.quaternion, pose = [p.x, p.y, p.z, q.w, q.x, q.y, q.z];
       if (pose.some((x, i) => x !== last[i])) { window.seen.push([at, ...pose]); last = pose; }
     }
-    window.frames = (window.frames ?? 0) + 1;
     requestAnimationFrame(look);
   };
   look();

@@ -13,7 +13,9 @@ from app.motion import Vector
 from app.scene.colours import Rgb, blend, theme
 from app.scene.shoe import SENSOR_HEIGHT_M
 
-REACH_M, BOLD_M, PIECE_M = 20, 5, 5
+#: How far the bold lines go, and the others: far ones melt together, and cost more to draw than a shoe.
+REACH_M, NEAR_M = 20, 10
+BOLD_M, PIECE_M = 5, 5
 
 #: Strokes of the letters on the floor, x right and y up, one unit high.
 GLYPHS: dict[str, tuple[tuple[tuple[float, float], ...], ...]] = {
@@ -87,22 +89,22 @@ def ruler() -> NDArray[np.float32]:
     return np.concatenate([strokes(f"{m} m", (m - 0.2, 0.4), 0.16) for m in (1, 2, 5, 10, 15, 20)])
 
 
-def fading(segments: NDArray[np.float32], ink: Rgb, into: Rgb) -> NDArray[np.uint8]:
-    """A colour for each end [k, 2, 3]: full in the middle, the sky's at the edge of the grid."""
-    away = np.clip(np.linalg.norm(segments[..., :2], axis=-1, keepdims=True) / REACH_M, 0.0, 1.0)
+def fading(segments: NDArray[np.float32], ink: Rgb, into: Rgb, reach_m: float) -> NDArray[np.uint8]:
+    """A colour for each end [k, 2, 3]: full in the middle, the sky's at ``reach_m``."""
+    away = np.clip(np.linalg.norm(segments[..., :2], axis=-1, keepdims=True) / reach_m, 0.0, 1.0)
     mixed = np.array(ink) * (1.0 - away) + np.array(into) * away
     # viser takes colours of single ends for linear light and would brighten them
     result: NDArray[np.uint8] = np.rint(255.0 * (mixed / 255.0) ** 2.2).astype(np.uint8)
     return result
 
 
-def grid(every_m: int, but_not_m: int | None = None) -> NDArray[np.float32]:
+def grid(every_m: int, reach_m: int, but_not_m: int | None = None) -> NDArray[np.float32]:
     """Lines north and east through a disc round the walker, in pieces that can fade: [k, 2, 3]."""
     lines = []
-    for across in range(-REACH_M, REACH_M + 1, every_m):
+    for across in range(-reach_m, reach_m + 1, every_m):
         if but_not_m is not None and across % but_not_m == 0:
             continue
-        half = math.sqrt(REACH_M**2 - across**2)
+        half = math.sqrt(reach_m**2 - across**2)
         along = np.linspace(-half, half, max(2, 2 * round(half / PIECE_M) + 1))
         line = np.stack([along, np.full(len(along), float(across))], axis=1)
         pieces = np.stack([line[:-1], line[1:]], axis=1)
@@ -127,12 +129,14 @@ class Ground:
         """Draw it in the theme's colours."""
         colours = theme(dark)
         self._frame = self._scene.add_frame("/ned/ground", show_axes=False, position=self._at)
-        for name, segments, ink, thickness in (
-            ("/ned/ground/metres", grid(1, BOLD_M), colours.cell, 1.0),
-            ("/ned/ground/bold", grid(BOLD_M), colours.section, 1.6),
+        for name, every_m, reach_m, but_not_m, ink, thickness in (
+            ("metres", 1, NEAR_M, BOLD_M, colours.cell, 1.0),
+            ("bold", BOLD_M, REACH_M, None, colours.section, 1.6),
         ):
-            faded = fading(segments, ink, colours.horizon)
-            self._draw(name, segments, faded, thickness)
+            segments = grid(every_m, reach_m, but_not_m)
+            self._draw(
+                f"/ned/ground/{name}", segments, fading(segments, ink, colours.horizon, reach_m), thickness
+            )
         self._draw("/ned/compass", rose(), colours.ink, 1.6)
         self._draw("/ned/compass_north", north(), colours.accent, 2.4)
         self._draw("/ned/ruler", ruler(), blend(colours.ink, colours.horizon, 0.3), 1.4)

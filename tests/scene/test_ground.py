@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from app.rotation import rotate
 from app.scene import ground
@@ -43,17 +44,18 @@ def test_an_f_would_not_be_mirrored() -> None:
     assert np.ptp(spine[:, 0]) > 0.9
 
 
-def test_the_grid_is_on_whole_metres_and_fades_into_the_sky() -> None:
-    segments = np.concatenate([ground.grid(1, ground.BOLD_M), ground.grid(ground.BOLD_M)])
+@pytest.mark.parametrize(("every_m", "reach_m"), [(1, ground.NEAR_M), (ground.BOLD_M, ground.REACH_M)])
+def test_the_grid_is_on_whole_metres_and_fades_into_the_sky(every_m: int, reach_m: int) -> None:
+    segments = ground.grid(every_m, reach_m)
     flat = segments[..., :2]
     whole = np.isclose(flat, np.rint(flat), atol=1e-5).all(axis=1)  # each line keeps one coordinate
     assert whole.any(axis=1).all()
     ends = np.linalg.norm(flat, axis=-1)
-    assert ends.max() <= ground.REACH_M + 1e-4
-    colours = ground.fading(segments, (255, 255, 255), (0, 0, 0))
-    assert colours[ends > ground.REACH_M - 1e-3].max() == 0
-    assert colours[ends < 1.0].min() > 200
-    assert len(segments) < 700
+    assert ends.max() <= reach_m + 1e-4
+    colours = ground.fading(segments, (255, 255, 255), (0, 0, 0), reach_m)
+    assert colours[ends > reach_m - 1e-3].max() == 0
+    assert colours[ends < 0.05 * reach_m].min() > 200
+    assert len(segments) < 200
 
 
 def test_the_grid_comes_along_by_whole_squares(scene: Scene) -> None:
