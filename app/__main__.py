@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.commands import export, forward, gestures, info, process, record, recover, study, walk
+from app.commands import emulate, export, forward, gestures, info, process, record, recover, study, walk
 from app.commands.shared import Parser
 from app.motion import InputError
 
@@ -22,6 +22,7 @@ COMMANDS = {
     "process": process,
     "gestures": gestures,
     "study": study,
+    "emulate": emulate,
 }
 
 

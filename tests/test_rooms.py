@@ -32,6 +32,7 @@ SHELL = {
     "batch",
     "record",
     "library",
+    "emulate",
     "export",
     "forward",
     "study",

@@ -11,6 +11,7 @@ from app.simulate.gestures import make_gestures
 from app.simulate.walk import make_walk
 from app.sources.files import load
 from app.sources.replay import Replay
+from app.sources.serial_spec import open_serial
 from app.sources.source import Source
 from app.sources.spec import LIVE, Spec, parse_spec
 from app.sources.udp import UdpSource
@@ -43,14 +44,11 @@ def open_source(
 
 def open_live(spec: Spec) -> Source:
     """The live source of each kind."""
+    if spec.kind == "serial":
+        return open_serial(spec)
     if spec.kind == "ws":
         return WsSource(spec)
-    if spec.kind == "udp":
-        return UdpSource(spec)
-    raise InputError(
-        f"{spec.kind}:{spec.target}: {spec.kind}: sources are not in this version, "
-        "expected a recording or sim:walk"
-    )
+    return UdpSource(spec)
 
 
 def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:

@@ -11,9 +11,10 @@ import asyncio
 import math
 import time
 from bisect import bisect_right
-from collections.abc import AsyncIterator, Sequence
+from collections.abc import AsyncIterator, Mapping, Sequence
 from typing import Protocol
 
+from app.formats.wire.stream import Counters
 from app.motion import (
     ApplyCandidate,
     Command,
@@ -100,6 +101,7 @@ class Replay:
         self.replay = True
         self.detail = ""
         self.made_by = recording.spec
+        self.counters: Mapping[str, Counters] = {}
         self.info = source_info(recording, truth)
         self.speed = _checked_speed(speed)
         self.loop = loop

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator
+from collections.abc import AsyncIterator, Mapping
 from typing import Protocol
 
+from app.formats.wire.stream import Counters
 from app.motion import InputError, Link, Order, ReplayCommand, RestartHere, Sample, SourceInfo, Stretch
 from app.settings import Settings
 
@@ -56,6 +57,10 @@ class Source(Protocol):
     def made_by(self) -> str | None:
         """The SPEC of the simulator behind it, for a recording of it."""
 
+    @property
+    def counters(self) -> Mapping[str, Counters]:
+        """What became of the bytes, by sensor; nothing for a replay."""
+
     def control(self, command: ReplayCommand) -> None:
         """Pause, step, seek, speed, loop."""
 
@@ -75,6 +80,11 @@ class Live:
     position_s = 0.0
     settings: Settings | None = None
     made_by: str | None = None
+
+    @property
+    def counters(self) -> Mapping[str, Counters]:
+        """None are kept."""
+        return {}
 
     def control(self, command: ReplayCommand) -> None:
         """Refused: what a sensor measures is over when it is over."""

@@ -58,12 +58,14 @@ class Kind:
     """One protocol. ``start_up`` is given the rate wanted; its result is the decoder's ``setup``.
 
     Without a ``start_up`` the device streams by itself. ``bauds`` stand in the order to try them.
+    ``sample_bytes`` is what a sample with everything takes on the line, about.
     """
 
     title: str
     bauds: tuple[int, ...]
     axes: Axes  # the mounting where nobody says otherwise
     fastest_hz: float
+    sample_bytes: int
     decoder: Callable[[str, Axes, Any], Decoder]  # sensor, mounting, setup or None
     model: Callable[[Axes], Model]
     start_up: Callable[[float], Script[Any]] | None = None
@@ -75,6 +77,7 @@ KINDS: dict[str, Kind] = {
         gx1_talk.AUTO_BAUDS,
         AS_GIVEN,
         gx1.FASTEST_HZ,
+        31,
         gx1.Gx1Decoder,
         gx1_talk.Gx1Device,
         lambda _: gx1_talk.start_up(),  # its rate is its EEPROM's
@@ -84,6 +87,7 @@ KINDS: dict[str, Kind] = {
         mip_talk.BAUDS,
         AS_GIVEN,
         mip.FASTEST_HZ,
+        80,
         mip.MipDecoder,
         mip_talk.MipDevice,
         mip_talk.start_up,
@@ -93,6 +97,7 @@ KINDS: dict[str, Kind] = {
         ximu3_talk.BAUDS,
         Z_UP,
         ximu3.FASTEST_HZ,
+        83,
         lambda sensor, axes, _: ximu3.Ximu3Decoder(sensor, axes),
         ximu3_talk.Ximu3Device,
         ximu3_talk.start_up,
@@ -102,6 +107,7 @@ KINDS: dict[str, Kind] = {
         (115200,),
         Z_UP,
         ngimu.FASTEST_HZ,
+        128,
         lambda sensor, axes, _: ngimu.NgimuDecoder(sensor, axes, slip=True),
         lambda axes: ngimu.NgimuDevice(axes, slip=True),
     ),
@@ -110,6 +116,7 @@ KINDS: dict[str, Kind] = {
         xsens_talk.BAUDS,
         Z_UP,
         xsens.FASTEST_HZ,
+        81,
         xsens.XsensDecoder,
         xsens_talk.XsensDevice,
         xsens_talk.start_up,
@@ -119,6 +126,7 @@ KINDS: dict[str, Kind] = {
         witmotion.BAUDS,
         Z_UP,
         witmotion.FASTEST_HZ,
+        44,
         witmotion.WitmotionDecoder,
         witmotion.WitmotionDevice,
         witmotion.start_up,
@@ -128,6 +136,7 @@ KINDS: dict[str, Kind] = {
         lines.BAUDS,
         Z_UP,
         lines.FASTEST_HZ,
+        138,
         lambda sensor, axes, _: lines.LinesDecoder(sensor, axes),
         lines.LinesDevice,
     ),

@@ -1,0 +1,117 @@
+"""Edge: a pseudo-terminal as the far end of a serial line: a host opens its path as it would a port."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import os
+import select
+import shutil
+import tempfile
+import termios
+import tty
+from collections.abc import Callable
+from pathlib import Path
+
+_LOOK_S = 0.02  # between looks whether a host has opened it
+_MOST = 4096
+
+
+class Terminal:
+    """What the host writes goes to ``on_data``. ``linked``: the path is a link that survives an unplug."""
+
+    def __init__(self, name: str, baud: int, on_data: Callable[[bytes], None], linked: bool) -> None:
+        self._speed = getattr(termios, f"B{baud}", None)
+        self._on_data = on_data
+        self._folder = Path(tempfile.mkdtemp(prefix="stridescope-")) if linked else None
+        self._name = name
+        self._master = -1
+        self._hosted = False
+        self.overrun = 0  # bytes that the host did not fetch in time
+        self.plug()
+
+    @property
+    def path(self) -> str:
+        """What the host opens."""
+        return str(self._folder / self._name) if self._folder else self._tty
+
+    @property
+    def hosted(self) -> bool:
+        """Whether a host has it open."""
+        return self._hosted
+
+    @property
+    def baud_agrees(self) -> bool:
+        """Whether the host's speed is the device's, as far as the system tells."""
+        if self._master < 0 or self._speed is None:
+            return True
+        speed: int = termios.tcgetattr(self._master)[5]
+        return speed == int(self._speed)
+
+    def plug(self) -> None:
+        """A new pseudo-terminal, raw and at the device's speed."""
+        self._master, slave = os.openpty()
+        self._tty = os.ttyname(slave)
+        tty.setraw(slave)
+        if self._speed is not None:
+            attributes = termios.tcgetattr(slave)
+            attributes[4] = attributes[5] = self._speed
+            termios.tcsetattr(slave, termios.TCSANOW, attributes)
+        os.close(slave)  # so that it shows when a host opens it
+        os.set_blocking(self._master, False)
+        if self._folder:
+            (self._folder / self._name).symlink_to(self._tty)
+
+    def unplug(self) -> None:
+        """Take it away from under the host."""
+        if self._folder:
+            (self._folder / self._name).unlink(missing_ok=True)
+        self._leave()
+        if self._master >= 0:
+            os.close(self._master)
+            self._master = -1
+
+    async def watch(self) -> None:
+        """Read what hosts write, for ever; to be run as a task."""
+        poll = select.poll()
+        while True:
+            if self._master >= 0 and not self._hosted:
+                poll.register(self._master, select.POLLIN)
+                ((_, events),) = poll.poll(0) or [(0, 0)]
+                poll.unregister(self._master)
+                if not events & select.POLLHUP:
+                    self._hosted = True
+                    asyncio.get_running_loop().add_reader(self._master, self._read)
+            await asyncio.sleep(_LOOK_S)
+
+    def write(self, data: bytes) -> None:
+        """Send; nobody hears what no host is there for, or does not fetch."""
+        if not self._hosted:
+            return
+        written = 0
+        with contextlib.suppress(OSError):
+            written = os.write(self._master, data)
+        self.overrun += len(data) - written
+
+    def close(self) -> None:
+        """Take it away, and its link."""
+        self.unplug()
+        if self._folder:
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    def _read(self) -> None:
+        try:
+            data = os.read(self._master, _MOST)
+        except BlockingIOError:
+            return
+        except OSError:  # the host has closed it
+            data = b""
+        if data:
+            self._on_data(data)
+        else:
+            self._leave()
+
+    def _leave(self) -> None:
+        if self._hosted:
+            self._hosted = False
+            asyncio.get_running_loop().remove_reader(self._master)

@@ -1,0 +1,223 @@
+"""Edge: a sensor on a serial port as a live source: found, started, read, and waited for when it goes."""
+
+from __future__ import annotations
+
+import asyncio
+import errno
+import logging
+import os
+import time
+from collections.abc import AsyncIterator, Mapping
+from dataclasses import dataclass
+
+from serial.tools.list_ports import comports
+
+from app.formats.mounting import Axes, describe
+from app.formats.wire.catalogue import Decoder
+from app.formats.wire.identify import Found
+from app.formats.wire.stream import Counters
+from app.motion import GAP_NS, InputError, Link, Sample, SourceInfo, role_of
+from app.sources.mailbox import Mailbox
+from app.sources.port import Port, PortLostError, open_port, refusal
+from app.sources.source import Item, Live
+from app.sources.starting import Started, Wish, start, start_known
+
+log = logging.getLogger(__name__)
+
+#: Between tries to open a port that is gone: they grow, but a sensor plugged in again is soon back.
+WAITS_S = (0.1, 0.2, 0.4, 0.8, 1.0)
+#: A sensor that was heard and is silent for so long has lost its power, or its mind.
+SILENT_S = 2.0
+#: Just opened, or just started, it may take longer: a board boots, a GX1's clock is measured.
+SILENT_AT_FIRST_S = 8.0
+#: Bytes that make no sample for so long: it was set to something else.
+FRUITLESS_S = 10.0
+FIRST_BAUD = 115200
+
+
+@dataclass(frozen=True)
+class PortSpec:
+    """One port as the SPEC says it. ``axes`` None: as is usual for the device."""
+
+    path: str
+    wish: Wish
+    foot: str = "foot"
+    axes: Axes | None = None
+
+
+class SerialPort(Live):
+    """One sensor. Its decoder is kept over a loss, so that numbers and stamps go on behind a gap."""
+
+    def __init__(self, spec: PortSpec) -> None:
+        """Nothing is opened yet; ``InputError`` if there is no such port or it may not be opened."""
+        self._spec = spec
+        _demand_port(spec.path)
+        self._inbox = Mailbox()
+        self._port: Port | None = None
+        self._started: Started | None = None
+        self._decoder: Decoder | None = None
+        self._seam = Seam()
+        self._link = Link.WAITING
+        self._detail = f"opening {spec.path}"
+        self._losses = 0
+
+    @property
+    def info(self) -> SourceInfo:
+        """What is known: after the sensor answered, what it is and what is assumed of it."""
+        spec, started, decoder = self._spec, self._started, self._decoder
+        name = f"serial:{spec.path}"
+        roles = {spec.foot: role_of(spec.foot)}
+        if started is None or decoder is None:
+            return SourceInfo(name, "not known yet", roles)
+        kind = started.kind
+        mounting = f"mounting {describe(spec.axes or kind.axes)}"
+        assumed = () if spec.axes else (f"{mounting}: as is usual for it (axes= says otherwise)",)
+        what = f"{kind.title} at {started.baud} baud"
+        dropped = {words: count for words, count in _told(decoder.counters).items() if count}
+        found = f"{started.device}: {started.evidence}"
+        return SourceInfo(name, what, roles, 0.0, (found, *assumed, *decoder.notes), dropped)
+
+    @property
+    def link(self) -> Link:
+        """WAITING before the first sample, LOST while the sensor is gone, else LIVE."""
+        return self._link
+
+    @property
+    def detail(self) -> str:
+        """What is being tried, or what was found."""
+        return self._detail
+
+    @property
+    def counters(self) -> Mapping[str, Counters]:
+        """What became of the bytes."""
+        return {self._spec.foot: self._decoder.counters} if self._decoder else {}
+
+    def __aiter__(self) -> AsyncIterator[Item]:
+        return self._inbox.items(self._serve())
+
+    def close(self) -> None:
+        """Let go of the port."""
+        if self._port is not None:
+            self._port.close()
+            self._port = None
+
+    # --- the port's life ---
+
+    async def _serve(self) -> None:
+        waits = iter(WAITS_S)
+        while True:
+            taken = self._seam.taken
+            try:
+                self._port = await open_port(self._spec.path, FIRST_BAUD)
+                await self._start(self._port)
+                await self._read(self._port)
+            except PortLostError as error:
+                if self._seam.taken > taken:
+                    waits = iter(WAITS_S)
+                    self._losses += 1
+                    log.info("%s (after %d samples)", error, self._seam.taken)
+                wait_s = next(waits, WAITS_S[-1])
+                self._link = Link.LOST if self._seam.taken else Link.WAITING
+                again = f"again in {wait_s:g} s" if wait_s >= 1.0 else "again now"
+                self._detail = f"{error}; trying {again}"
+            finally:
+                self.close()
+            await asyncio.sleep(wait_s)
+
+    async def _start(self, port: Port) -> None:
+        known = self._started
+        if known is None:
+            started = await start(port, self._spec.wish, self._tell)
+        else:
+            try:
+                port.set_baud(known.baud)
+                found = Found(known.device, known.evidence)
+                started = await start_known(port, known.baud, found, self._spec.wish.rate_hz, self._tell)
+            except PortLostError:
+                await port.read(0.0)  # gone altogether? else it may be another sensor by now
+                started = await start(port, self._spec.wish, self._tell)
+        if self._decoder is None or _another(known, started):
+            axes = self._spec.axes or started.kind.axes
+            self._decoder = started.kind.decoder(self._spec.foot, axes, started.setup)
+            self._seam.cut()
+        self._started = started
+        self._take(time.monotonic_ns(), started.heard)
+
+    async def _read(self, port: Port) -> None:
+        """Decode what comes, until it ends in ``PortLostError``."""
+        patience_s = SILENT_AT_FIRST_S
+        sample_s = time.monotonic()
+        while True:
+            arrived = await port.read(patience_s)
+            if not arrived:
+                raise PortLostError(f"{port.path}: nothing came for {patience_s:g} s: check its power")
+            patience_s = SILENT_S
+            for host_ns, data in arrived:
+                if self._take(host_ns, data):
+                    sample_s = time.monotonic()
+            if time.monotonic() - sample_s > FRUITLESS_S:
+                raise PortLostError(f"{port.path}: what comes makes no samples: starting the sensor anew")
+
+    def _take(self, host_ns: int, data: bytes) -> bool:
+        started, decoder = self._started, self._decoder
+        samples = decoder.feed(data, host_ns) if decoder and data else []
+        if not samples or started is None:
+            return False
+        self._link = Link.LIVE
+        again = f", {self._losses} time{'' if self._losses == 1 else 's'} lost" if self._losses else ""
+        self._detail = f"{started.kind.title} at {started.baud} baud{again}"
+        self._inbox.put(self._seam.join(sample) for sample in samples)
+        return True
+
+    def _tell(self, what: str) -> None:
+        self._detail = f"{self._spec.path}: {what}"
+
+
+class Seam:
+    """Joins the samples of one decoder to those of the one before it: numbers and stamps only increase."""
+
+    def __init__(self) -> None:
+        self.taken = 0
+        self._last: Sample | None = None
+        self._shift: tuple[int, int] | None = (0, 0)  # of seq and of device_ns; None: with the next sample
+
+    def cut(self) -> None:
+        """The next sample is another decoder's first."""
+        self._shift = None if self._last else (0, 0)
+
+    def join(self, sample: Sample) -> Sample:
+        """The sample in the run of all."""
+        if self._shift is None and self._last is not None:
+            silence_ns = max(sample.host_ns - self._last.host_ns, GAP_NS + 1)
+            stamp_ns = self._last.device_ns + silence_ns
+            self._shift = (self._last.seq + 1 - sample.seq, stamp_ns - sample.device_ns)
+        seq, shift_ns = self._shift or (0, 0)
+        self._last = sample._replace(seq=sample.seq + seq, device_ns=sample.device_ns + shift_ns)
+        self.taken += 1
+        return self._last
+
+
+def _another(known: Started | None, started: Started) -> bool:
+    """Whether this is not the sensor that was there before."""
+    if known is None or known.device != started.device:
+        return True
+    before, now = (getattr(each.setup, "serial", "") for each in (known, started))
+    return bool(before and now and before != now)
+
+
+def _told(counters: Counters) -> dict[str, int]:
+    return {
+        "packets that did not hold": counters.bad_checksum,
+        "bytes of rubbish": counters.bytes_skipped,
+        "readings unusable": counters.dropped,
+        "lost by the sensor's count": counters.lost,
+    }
+
+
+def _demand_port(path: str) -> None:
+    """A port that cannot be opened is the user's to know at once, before any page opens."""
+    if not os.path.exists(path):
+        there = ", ".join(port.device for port in comports()) or "none"
+        raise InputError(f"serial:{path}: no such port, expected one that is there: {there}")
+    if not os.access(path, os.R_OK | os.W_OK):
+        raise InputError(f"serial:{refusal(path, PermissionError(errno.EACCES, ''))}")
