@@ -31,9 +31,7 @@ def port_specs(spec: Spec) -> list[PortSpec]:
     """What is said of each port."""
     paths = [path.strip() for path in spec.target.split(",")]
     if len(paths) > 2 or "" in paths or len(set(paths)) < len(paths):
-        raise InputError(
-            f"serial:{spec.target}: expected one port, or two of which the first is the left foot's"
-        )
+        raise InputError(f"serial:{spec.target}: expected a port, or the left foot's and the right's")
     if len(paths) == 1:
         return [_port_spec(paths[0], spec.options)]
     if "foot" in spec.options:

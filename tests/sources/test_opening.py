@@ -8,6 +8,7 @@ from app.formats.plain import encode
 from app.motion import InputError, Sample
 from app.simulate.walk import make_walk
 from app.sources.opening import open_source
+from app.sources.replay import Replay
 
 WALK = {"distance_m": "3", "feet": "2", "noise": "1"}
 SPEC = "sim:walk?" + "&".join(f"{key}={value}" for key, value in WALK.items())
@@ -31,6 +32,7 @@ def test_a_simulated_walk_knows_its_truth() -> None:
 
 def test_a_recording_of_a_simulated_walk_knows_it_too(recorded: Path) -> None:
     live, replay = open_source(SPEC), open_source(str(recorded))
+    assert isinstance(replay, Replay)
     assert live.info.truth is not None
     assert replay.info.truth is not None
     t_s = np.linspace(0.0, replay.duration_s, 50)
