@@ -11,11 +11,11 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app import __version__
+from app import __version__, opinions
 from app.motion import InputError
 from app.outputs.report import number, report
 from app.studies.catalogue import STUDIES
-from app.studies.words import Row, Study
+from app.studies.words import Row, Study, Task
 from app.workers import Tell, run_all
 
 
@@ -39,7 +39,7 @@ def names_of(name: str) -> tuple[str, ...]:
 def study(names: Sequence[str], jobs: int, cluster: str | None, tell: Tell) -> Outcome:
     """Run these studies, their tasks all together."""
     began = time.perf_counter()
-    plans = [(STUDIES[name], STUDIES[name].tasks(STUDIES[name].config)) for name in names]
+    plans = [(STUDIES[name], tasks_of(name)) for name in names]
     done = run_all([task for _, tasks in plans for task in tasks], jobs, cluster, tell)
     studies, first = [], 0
     for experiment, tasks in plans:
@@ -47,6 +47,13 @@ def study(names: Sequence[str], jobs: int, cluster: str | None, tell: Tell) -> O
         first += len(tasks)
     where = f"the Dask cluster at {cluster}" if cluster else f"{jobs} process{'es' if jobs > 1 else ''}"
     return Outcome(tuple(studies), time.perf_counter() - began, where)
+
+
+def tasks_of(name: str) -> list[Task]:
+    """A study's tasks, and those of who else is asked."""
+    experiment = STUDIES[name]
+    others = opinions.tasks(experiment.config) if name == "attitude" else ()
+    return [*experiment.tasks(experiment.config), *others]
 
 
 def summary(outcome: Outcome) -> dict[str, object]:

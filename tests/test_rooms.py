@@ -27,6 +27,7 @@ HEART = {
 }
 HEART |= {"estimator", "gestures", "simulate", "formats", "studies"}
 EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed", "workers"}
+EDGES |= {"opinions"}
 SHELL = {
     "run",
     "batch",

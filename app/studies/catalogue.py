@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from app.studies import integrators, pendulum, walks
+from app.studies import attitude, integrators, pendulum, walks
 from app.studies.monte_carlo import WalkConfig
 from app.studies.words import Experiment
 
 STUDIES: dict[str, Experiment] = {
     "integrators": Experiment(integrators.Config(), integrators.tasks, integrators.conclude),
     "pendulum": Experiment(pendulum.Config(), pendulum.tasks, pendulum.conclude),
+    "attitude": Experiment(attitude.Config(), attitude.tasks, attitude.conclude),
     "walk-noise": Experiment(WalkConfig(), walks.noise_tasks, walks.noise_study),
     "walk-bias": Experiment(walks.BiasConfig(), walks.bias_tasks, walks.bias_study),
 }
