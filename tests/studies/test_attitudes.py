@@ -91,7 +91,7 @@ def test_the_filter_settles_at_the_pose_whatever_its_correction_rate(every: int)
     gauss_newton(samples, FIELD_N_UT, (0.98, 0.12, 0.16, 0.0), 2.0, 1.0, every, out)
     assert rotation(out)[-1].magnitude() < 1e-6
     halfway = rotation(out)[50].magnitude() / rotation(out)[0].magnitude()
-    assert halfway == pytest.approx(np.exp(-1.0), rel=0.05)
+    assert halfway == pytest.approx(np.exp(-1.0), rel=0.1)  # steps of 0.04 s at every 4th
 
 
 @pytest.mark.parametrize("name", MOTIONS)
