@@ -25,6 +25,8 @@ MAX_SOCKETS = 256
 MAX_SOCKETS_OF_ONE = 64
 #: From the connection to the end of its TLS handshake, and as long again to the end of its request's head.
 HEAD_SECONDS = 10.0
+#: Of what is on its way to a browser, the kernel keeps so much that it could not send yet.
+UNSENT_BYTES = 16 * 1024
 TLS_HELLO = b"\x16"
 NOT_PLAIN = (
     b"HTTP/1.1 400 Bad Request\r\nContent-Type: text/plain; charset=utf-8\r\nConnection: close\r\n\r\n"
@@ -52,6 +54,7 @@ class Reception:
                 await asyncio.sleep(0.1)
                 continue
             if self._has_room(str(address[0])):
+                _hold_little(connection)
                 task = asyncio.create_task(self._take(connection))
                 self.arriving.add(task)
                 task.add_done_callback(self.arriving.discard)
@@ -92,6 +95,14 @@ class Reception:
             raise
 
 
+def _hold_little(connection: socket.socket) -> None:
+    """What a browser does not take soon is better not sent: viser then sends the newest instead."""
+    with contextlib.suppress(OSError):  # it has gone again
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BYTES)
+        if hasattr(socket, "TCP_NOTSENT_LOWAT"):
+            connection.setsockopt(socket.IPPROTO_TCP, socket.TCP_NOTSENT_LOWAT, UNSENT_BYTES)
+
+
 async def _begins_tls(connection: socket.socket) -> bool:
     """Whether the first byte is TLS's; who speaks plain HTTP is told."""
     async with asyncio.timeout(HEAD_SECONDS):
@@ -129,8 +140,6 @@ def bind(access: Access) -> socket.socket:
         raise _no_such_host(host) from error
     try:
         listener.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
-        # What a browser does not take soon is better not sent: viser then sends the newest instead.
-        listener.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BYTES)
         if family == socket.AF_INET6:
             listener.setsockopt(socket.IPPROTO_IPV6, socket.IPV6_V6ONLY, 0)  # "::" takes IPv4 as well
         listener.bind(address)

@@ -20,7 +20,7 @@ from app.door.filter import Rules, admit
 
 MAX_BROWSERS = 64
 PING_SECONDS = 30.0
-SOCKET_BYTES = 128 * 1024
+SOCKET_BYTES = 64 * 1024
 
 #: Where a judged request says who asks.
 VISITOR = web.RequestKey("visitor", Visitor)
@@ -103,7 +103,7 @@ class Upstream:
                 return say(400, "400: this websocket offers no version of the viewer; reload the page.")
             browser = _answer_websocket(viser.protocol)
             await browser.prepare(request)
-            await bridge.join(browser, viser, self._admit_for(request[VISITOR]), self.counters)
+            await bridge.join(browser, transport, viser, self._admit_for(request[VISITOR]), self.counters)
             if transport is not None:
                 transport.abort()  # one that never reads would keep what waits for it
             return browser
@@ -158,6 +158,7 @@ def _answer_websocket(protocol: str) -> web.WebSocketResponse:
         compress=False,
         max_msg_size=bridge.MAX_INBOUND_BYTES,
         heartbeat=PING_SECONDS,
+        autoping=False,  # the bridge counts pings as messages
         timeout=bridge.CLOSE_SECONDS,
         writer_limit=0,
     )

@@ -8,6 +8,7 @@ from __future__ import annotations
 import contextlib
 import io
 import socket
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -16,6 +17,7 @@ from viser import _messages
 
 from app.motion import Quaternion, Vector
 
+SOCKET_BYTES = 64 * 1024
 Json = dict[str, Any]
 
 
@@ -25,7 +27,15 @@ def open_server(label: str) -> viser.ViserServer:
         server = viser.ViserServer(host="127.0.0.1", port=_free_port(), label=label, verbose=False)
     for message in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(message)
+    server._websock_server.on_client_connect(partial(_hold_little, server))
     return server
+
+
+def _hold_little(server: viser.ViserServer, client: Any) -> None:
+    """Let the kernel keep little for a browser that is slow to read: viser replaces old news, it can't."""
+    connection = server._websock_server._live_connections[client.client_id]
+    kept = connection.transport.get_extra_info("socket")
+    kept.setsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF, SOCKET_BYTES)
 
 
 def close_server(server: viser.ViserServer) -> None:
