@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -9,6 +10,7 @@ import viser
 
 from app.motion import ResetHeading, RestartHere, Snapshot, Status
 from app.scene import figures
+from app.scene.beat import beat
 from app.scene.controls import Ask, Controls, Html, Input
 from app.scene.graphs import Graphs
 from app.scene.hindsight import CandidateBox, GainSearch
@@ -110,7 +112,7 @@ class Panel:
 
     def show_text(self, snapshot: Snapshot, status: Status, view: View) -> None:
         """Words, figures and controls: at most ten times a second."""
-        self._header.show(figures.header(status))
+        self._header.show(figures.header(status) + beat(time.time()))
         self._message.show(banner(status) + figures.message(snapshot, status))
         self._feet.show(figures.feet(snapshot))
         self._soundness.show(snapshot, status)

@@ -16,6 +16,7 @@ import pytest
 import websockets.exceptions
 import zstandard
 
+from app.door import bridge
 from app.door.bridge import MAX_INBOUND_BYTES
 
 Frame = Callable[..., bytes]
@@ -138,6 +139,58 @@ def test_one_browser_that_never_reads_stalls_nobody_and_little_waits_for_it(hous
         newest.join(30)
         assert not newest.is_alive()
     assert _drain(stalled) < count * points.nbytes / 4
+
+
+def test_one_that_takes_nothing_is_let_go_and_one_that_is_slow_is_not(
+    house: Any, wait: Wait, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(bridge, "STALL_SECONDS", 1.0)
+    monkeypatch.setattr(bridge, "LOOK_SECONDS", 0.1)
+    points = np.zeros((400_000, 3), np.float32)
+    cloud = house.viser.scene.add_point_cloud("/c", points, (1, 2, 3), precision="float32")
+    stalled, slow = house.knock(), house.knock()
+    wait(lambda: house.door.counters.connections == 2)
+    ended = threading.Event()
+
+    def keep_sending() -> None:
+        number = 0
+        while not ended.wait(0.02):
+            number += 1
+            cloud.points = np.full_like(points, number)
+            house.viser.flush()
+
+    sender = threading.Thread(target=keep_sending)
+    sender.start()
+    try:
+        until = time.monotonic() + 60.0
+        while house.door.counters.closed_stalled == 0:
+            slow.recv(16 * 1024)
+            time.sleep(0.05)
+            assert time.monotonic() < until
+        for _ in range(40):
+            assert slow.recv(16 * 1024)
+            time.sleep(0.05)
+    finally:
+        ended.set()
+        sender.join()
+    assert (house.door.counters.closed_stalled, house.door.counters.connections) == (1, 1)
+    with contextlib.suppress(ConnectionError):  # its end comes, and not a time-out
+        while stalled.recv(1 << 16):
+            pass
+
+
+def test_a_flood_of_messages_is_read_slowly_and_stops_nobody(
+    house: Any, set_value: Frame, wait: Wait
+) -> None:
+    with house.connect() as flooding, house.connect() as good:
+        for i in range(450):
+            flooding.send(set_value(house.slider, 0.5 + i / 1000))
+        for _ in range(50):
+            flooding.ping()
+        good.send(set_value(house.name, "still here"))
+        wait(lambda: house.name.value == "still here")
+        wait(lambda: house.door.counters.paced > 10)
+        wait(lambda: house.slider.value == 0.5 + 449 / 1000)  # and nothing of it was lost
 
 
 def test_a_browser_that_leaves_is_forgotten(house: Any, wait: Wait) -> None:

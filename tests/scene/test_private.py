@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import socket
 from importlib.metadata import version
 
 from viser import _messages
 
 from app.scene import private
 from app.scene.page import Scene
+from tests.scene.browsers import client, until
 
 
 def test_the_version_that_was_read() -> None:
@@ -25,6 +27,14 @@ def test_no_browser_can_open_a_tunnel(scene: Scene) -> None:
     assert _messages.ShareUrlRequest not in handlers
     assert _messages.ShareUrlDisconnect not in handlers
     assert _messages.GuiUpdateMessage in handlers
+
+
+def test_little_is_kept_for_a_browser_that_is_slow(scene: Scene) -> None:
+    with client(scene.port):
+        until(lambda: bool(scene._server._websock_server._live_connections))
+        (connection,) = scene._server._websock_server._live_connections.values()
+        kept = connection.transport.get_extra_info("socket")
+        assert kept.getsockopt(socket.SOL_SOCKET, socket.SO_SNDBUF) <= 2 * private.SOCKET_BYTES
 
 
 def test_a_controls_name_is_the_key_of_its_messages(scene: Scene) -> None:
