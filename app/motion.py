@@ -649,3 +649,12 @@ class GuiRule:
     high: float = math.inf
     choices: tuple[str, ...] = ()
     max_length: int = 80
+
+
+class Measure(NamedTuple):
+    """One number for who runs the program: ``/metrics`` tells it. Names and units are Prometheus's."""
+
+    name: str  # "stridescope_samples_total"
+    what: str  # a sentence
+    value: float
+    labels: tuple[tuple[str, str], ...] = ()

@@ -31,6 +31,7 @@ from app.door.front import Door
 from app.estimator import sweep as gains
 from app.formats.journal import Start
 from app.health import report
+from app.measures import measures
 from app.outputs.recorder import Recorder
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
@@ -94,6 +95,8 @@ class Viewer:
         # two for a search, one so that a slider never waits for it
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
         self._seen: m.Snapshot | None = None  # the newest that was drawn
+        self._shown: m.Status | None = None  # with it
+        self._frames = 0
         self._status = m.Status(source.info, source.link, profiles=profiles.names())
         self._message_until = 0.0
         self._last_sample_s = time.monotonic()
@@ -122,6 +125,7 @@ class Viewer:
                 viser_port=scene.port,
                 rules=scene.rules,
                 health=self._health,
+                measures=lambda: measures(self._seen, self._shown, self._frames),
                 extra_head=scene.head,
             )
             closing.callback(door.stop)
@@ -358,7 +362,9 @@ class Viewer:
             try:
                 snapshot = self._seen = self._session.snapshot()
                 self._record_walk(snapshot.main.feet)
-                scene.draw(snapshot, self._status_now())
+                self._shown = self._status_now()
+                scene.draw(snapshot, self._shown)
+                self._frames += 1
             except Exception:
                 log.exception("drawing failed")
                 await asyncio.sleep(1.0)

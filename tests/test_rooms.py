@@ -26,7 +26,7 @@ HEART = {
     "world",
 }
 HEART |= {"estimator", "gestures", "simulate", "formats", "studies"}
-EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed", "workers"}
+EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed", "workers", "measures"}
 EDGES |= {"opinions"}
 SHELL = {
     "run",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import logging
 import os
 import sys
 from pathlib import Path
@@ -15,7 +16,10 @@ from app.door.addresses import everything
 from app.motion import InputError
 from app.settings import Settings, parse
 
+log = logging.getLogger(__name__)
+
 DEFAULT_PROFILE = "papers"
+LONG_TOKEN = 12
 
 
 class Parser(argparse.ArgumentParser):
@@ -95,6 +99,8 @@ def door_options(options: argparse.Namespace) -> Access:
     """Where to listen, and the tokens: given, or made for this run where others could come in."""
     operator = token_from(options.token_file, "--token-file", "STRIDESCOPE_TOKEN")
     viewer = token_from(options.viewer_token_file, "--viewer-token-file", "STRIDESCOPE_VIEWER_TOKEN")
+    for given in (operator, viewer):
+        _warn_of_short(given)
     if operator or viewer or options.with_token or not is_loopback(options.host):
         operator, viewer = operator or made_token(), viewer or made_token()
     return Access(options.host, options.port, operator, viewer, _certificate(options))
@@ -131,3 +137,8 @@ def token_from(file: Path | None, option: str, variable: str) -> str | None:
     if not token:
         raise InputError(f"{option} {file}: empty, expected a token")
     return token
+
+
+def _warn_of_short(token: str | None) -> None:
+    if token and len(token) < LONG_TOKEN:
+        log.warning("a token of %d characters can be guessed: give %d or more", len(token), LONG_TOKEN)

@@ -8,7 +8,7 @@ import logging
 import socket
 import ssl
 import threading
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from functools import partial
 
@@ -16,11 +16,12 @@ from app.door import tls
 from app.door.access import Access, is_loopback
 from app.door.addresses import own_names, reachable
 from app.door.counters import Counters
+from app.door.entrance import Entrance
 from app.door.gate import Gate
 from app.door.greeting import greeting
 from app.door.listening import bind
-from app.door.service import Service
-from app.motion import GuiRule
+from app.door.service import Service, Told
+from app.motion import GuiRule, Measure
 
 log = logging.getLogger(__name__)
 
@@ -31,8 +32,8 @@ class Door:
     """A small HTTP and websocket server on its own thread and its own loop.
 
     ``rules()`` says what a browser may write, by control; ``health()`` is what ``/healthz`` tells
-    anybody on this machine, so nothing secret. Both are called on the door's thread and must not
-    block. ``extra_head`` is our own markup for the page's head.
+    anybody on this machine, and ``measures()`` what ``/metrics`` does, so nothing secret. All are
+    called on the door's thread and must not block. ``extra_head`` is our own markup for the page's head.
     """
 
     def __init__(
@@ -42,11 +43,13 @@ class Door:
         viser_port: int,
         rules: Callable[[], Mapping[str, GuiRule]],
         health: Callable[[], Mapping[str, object]],
+        measures: Callable[[], Iterable[Measure]] = tuple,
         extra_head: str = "",
     ) -> None:
         self.counters = Counters()
         self.access = access
-        self._viser_port, self._rules, self._health, self._extra_head = viser_port, rules, health, extra_head
+        self._viser_port, self._rules, self._extra_head = viser_port, rules, extra_head
+        self._told = Told(health, measures)
         self._thread: threading.Thread | None = None
         self._stop: Callable[[], object] | None = None
 
@@ -110,5 +113,7 @@ class Door:
             ready.set()
 
         gate = Gate(self.access, own_names(self.access.host))
-        service = Service(gate, self._viser_port, self._rules, self._health, self._extra_head, self.counters)
+        service = Service(
+            Entrance(gate), self._viser_port, self._rules, self._told, self._extra_head, self.counters
+        )
         await service.run(listener, secure, stopping, opened)

@@ -6,20 +6,23 @@ import asyncio
 import logging
 import socket
 import ssl
-from collections.abc import Awaitable, Callable, Mapping
+from collections.abc import Awaitable, Callable, Iterable, Mapping
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import aiohttp
 import msgspec
 from aiohttp import hdrs, web
 
 from app.door import page
-from app.door.access import Visitor, is_loopback
 from app.door.counters import Counters
+from app.door.entrance import GUESS_SECONDS, Entrance, guesses
+from app.door.exposition import CONTENT_TYPE, exposition, of_counters
 from app.door.filter import Rules
-from app.door.gate import Gate, Refusal
+from app.door.gate import Refusal
 from app.door.listening import HEAD_SECONDS, Reception
-from app.door.upstream import VISITOR, Upstream, is_websocket, open_session, say, say_starting, without_token
+from app.door.upstream import VISITOR, Upstream, open_session, say, say_starting
+from app.motion import Measure
 
 log = logging.getLogger(__name__)
 # aiohttp would log the first line of a request that it cannot read, token and all.
@@ -29,14 +32,21 @@ _silent.setLevel(logging.CRITICAL + 1)
 _Handler = Callable[[web.Request], Awaitable[web.StreamResponse]]
 
 
+class Told(NamedTuple):
+    """What the program tells who runs it."""
+
+    health: Callable[[], Mapping[str, object]]
+    measures: Callable[[], Iterable[Measure]]
+
+
 @dataclass(frozen=True)
 class Service:
     """Everything one door serves. ``run`` lives on the door's loop; nothing else touches it."""
 
-    gate: Gate
+    entrance: Entrance
     viser_port: int
     rules: Callable[[], Rules]
-    health: Callable[[], Mapping[str, object]]
+    told: Told
     extra_head: str
     counters: Counters
 
@@ -73,6 +83,7 @@ class Service:
         application = web.Application(middlewares=[self._guard])
         application.on_response_prepare.append(_add_safe_headers)
         application.router.add_get("/healthz", self._tell_health)
+        application.router.add_get("/metrics", self._tell_metrics)
         application.router.add_get("/", upstream.give_page)
         application.router.add_get("/index.html", upstream.give_page)
         application.router.add_get("/{path:.*}", upstream.give_file)
@@ -80,13 +91,14 @@ class Service:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
-        judged = self._judge(request)
+        judged = self.entrance.judge(request)
         if isinstance(judged, Refusal):
             self.counters.refuse(judged.what)
             log.info("refused a request from %s: %s", request.remote, judged.line)
-            return say(judged.status, judged.line)
-        if self._is_first_visit(request):
-            return self._welcome(request, judged)
+            await asyncio.sleep(GUESS_SECONDS if guesses(request) else 0.0)
+            return self.entrance.turn_away(request, judged)
+        if self.entrance.is_first_visit(request):
+            return self.entrance.welcome(request, judged)
         request[VISITOR] = judged
         try:
             return await handler(request)
@@ -98,41 +110,14 @@ class Service:
             log.exception("a request failed")
             return say(500, "500: something failed here; the program's log says what.")
 
-    def _judge(self, request: web.Request) -> Visitor | Refusal:
-        headers = request.headers
-        refusal = self.gate.check_site(
-            headers.getall(hdrs.HOST, []), headers.getall(hdrs.ORIGIN, []), is_websocket(request)
-        )
-        if refusal is not None:
-            return refusal
-        if request.path == "/healthz" and is_loopback(request.remote or ""):
-            return Visitor.VIEWER
-        if self._is_first_visit(request):
-            return self.gate.check_token(request.query["token"])
-        return self.gate.check_cookie(request.cookies.get(self.gate.cookie_name))
-
-    def _is_first_visit(self, request: web.Request) -> bool:
-        asks = self.gate.access.operator is not None and "token" in request.query
-        return asks and request.path == "/" and not is_websocket(request)
-
-    def _welcome(self, request: web.Request, visitor: Visitor) -> web.Response:
-        """The right token (judged before) becomes a cookie and leaves the address."""
-        rest = without_token(request).raw_query_string
-        answer = web.Response(status=303, headers={hdrs.LOCATION: f"/?{rest}" if rest else "/"})
-        answer.set_cookie(
-            self.gate.cookie_name,
-            self.gate.cookie_value(visitor),
-            path="/",
-            httponly=True,
-            samesite="Strict",
-            secure=self.gate.access.certificate is not None,
-        )
-        return answer
-
     async def _tell_health(self, request: web.Request) -> web.Response:
-        told = {"ok": True, **self.health()}
+        told = {"ok": True, **self.told.health()}
         body = msgspec.json.encode(told, enc_hook=str)
         return web.Response(body=body, content_type="application/json", status=200 if told["ok"] else 503)
+
+    async def _tell_metrics(self, request: web.Request) -> web.Response:
+        body = exposition((*of_counters(self.counters), *self.told.measures()))
+        return web.Response(body=body.encode(), headers={hdrs.CONTENT_TYPE: CONTENT_TYPE})
 
 
 async def _add_safe_headers(request: web.Request, response: web.StreamResponse) -> None:

@@ -51,6 +51,15 @@ def test_tokens_are_given_by_file_or_environment(tmp_path: Path, monkeypatch: py
     assert access("--token-file", str(file)).operator == "of the file"
 
 
+def test_a_short_token_is_warned_of_and_not_told(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    monkeypatch.setenv("STRIDESCOPE_TOKEN", "hunter2")
+    assert access().operator == "hunter2"
+    assert "7 characters" in caplog.text
+    assert "hunter2" not in caplog.text
+
+
 def test_a_viewer_s_token_alone_brings_one_for_operators(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("STRIDESCOPE_VIEWER_TOKEN", "to watch")
     assert access().viewer == "to watch"

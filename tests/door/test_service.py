@@ -13,6 +13,7 @@ import pytest
 import websockets.exceptions
 
 from app.door import listening, upstream
+from app.motion import Measure
 
 Open = Callable[..., Any]
 EVIL_HOSTS = [
@@ -148,6 +149,34 @@ def test_an_absolute_address_in_the_request_redirects_nowhere_else(open_house: O
 
 def test_health_needs_no_token_on_this_machine(open_house: Open) -> None:
     assert open_house(operator="secret-token").get("/healthz")[0] == 200
+
+
+def test_metrics_are_told_as_prometheus_reads_them(open_house: Open) -> None:
+    house = open_house(measures=lambda: [Measure("stridescope_samples_total", "Samples", 7.0)])
+    status, headers, body = house.get("/metrics")
+    assert (status, headers["content-type"]) == (200, "text/plain; version=0.0.4")
+    assert "\nstridescope_samples_total 7\n" in body
+    assert "\nstridescope_door_connections 0\n" in body
+
+
+@pytest.mark.parametrize("path", ["/healthz", "/metrics"])
+def test_numbers_are_for_this_machine_and_for_who_has_a_token(open_house: Open, path: str) -> None:
+    house = open_house(host="0.0.0.0", operator="secret-token", viewer="look-only-token")
+    assert house.get(path)[0] == 200
+    by_proxy = f"192.168.1.5:{house.port}"
+    assert house.get(path, host=by_proxy)[0] == 401
+    for token in ("secret-token", "look-only-token"):
+        assert house.get(path, host=by_proxy, Authorization=f"Bearer {token}")[0] == 200
+    for wrong in ("Bearer secret", "secret", "Basic c2VjcmV0", "Bearer"):
+        assert house.get(path, host=by_proxy, Authorization=wrong)[0] == 401
+
+
+def test_who_comes_by_a_link_of_another_site_is_sent_round_once(open_house: Open) -> None:
+    house = open_house(operator="secret-token")
+    status, headers, _ = house.get("/", Sec_Fetch_Site="cross-site")
+    assert (status, headers["refresh"]) == (401, "0; url=/")
+    assert "refresh" not in house.get("/", Sec_Fetch_Site="same-origin")[1]
+    assert "refresh" not in house.get("/nothing", Sec_Fetch_Site="cross-site")[1]
 
 
 def test_no_log_line_holds_a_token(open_house: Open, caplog: pytest.LogCaptureFixture) -> None:
