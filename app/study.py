@@ -5,16 +5,20 @@ from __future__ import annotations
 import json
 import platform
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import NamedTuple
 
 import numpy as np
 
 from app import __version__, opinions
-from app.motion import InputError
+from app.motion import InputError, Samples
 from app.outputs.report import number, report
+from app.sources.opening import open_recording
+from app.sources.spec import parse_spec
 from app.studies.catalogue import STUDIES
+from app.studies.gains import recorded_tasks
 from app.studies.words import Row, Study, Task
 from app.workers import Tell, run_all
 
@@ -36,10 +40,13 @@ def names_of(name: str) -> tuple[str, ...]:
     return (name,)
 
 
-def study(names: Sequence[str], jobs: int, cluster: str | None, tell: Tell) -> Outcome:
-    """Run these studies, their tasks all together."""
+def study(
+    names: Sequence[str], jobs: int, cluster: str | None, tell: Tell, recordings: Sequence[str] = ()
+) -> Outcome:
+    """Run these studies, their tasks all together; ``recordings`` are SPECs for the study of gains."""
     began = time.perf_counter()
-    plans = [(STUDIES[name], tasks_of(name)) for name in names]
+    walks = _walks(recordings)
+    plans = [(STUDIES[name], tasks_of(name, walks)) for name in names]
     done = run_all([task for _, tasks in plans for task in tasks], jobs, cluster, tell)
     studies, first = [], 0
     for experiment, tasks in plans:
@@ -49,11 +56,25 @@ def study(names: Sequence[str], jobs: int, cluster: str | None, tell: Tell) -> O
     return Outcome(tuple(studies), time.perf_counter() - began, where)
 
 
-def tasks_of(name: str) -> list[Task]:
-    """A study's tasks, and those of who else is asked."""
+def tasks_of(name: str, walks: Mapping[str, Samples] = MappingProxyType({})) -> list[Task]:
+    """A study's tasks, and those that outside opinions and recorded walks bring."""
     experiment = STUDIES[name]
-    others = opinions.tasks(experiment.config) if name == "attitude" else ()
+    others: Sequence[Task] = ()
+    if name == "attitude":
+        others = opinions.tasks(experiment.config)
+    elif name == "gains":
+        others = recorded_tasks(walks)
     return [*experiment.tasks(experiment.config), *others]
+
+
+def _walks(specs: Sequence[str]) -> dict[str, Samples]:
+    """The sensors of recordings, by name."""
+    found = {}
+    for spec in specs:
+        recording, _ = open_recording(parse_spec(spec))
+        for samples in recording.sensors:
+            found[f"{recording.name} {samples.sensor}"] = samples
+    return found
 
 
 def summary(outcome: Outcome) -> dict[str, object]:

@@ -22,6 +22,13 @@ def add(commands: Commands) -> None:
     study.add_argument(
         "--out", metavar="DIR", type=Path, help="write report.html and rows.json there (./studies)"
     )
+    study.add_argument(
+        "--recording",
+        metavar="SPEC",
+        action="append",
+        default=[],
+        help="a walk that ends where it began, for the study of gains",
+    )
     add_json(study)
     add_workers(study)
 
@@ -47,7 +54,9 @@ def run(options: argparse.Namespace) -> int:
     """The papers' studies."""
     from app import study
 
-    outcome = study.study(study.names_of(options.name), jobs_of(options), options.cluster, bar)
+    outcome = study.study(
+        study.names_of(options.name), jobs_of(options), options.cluster, bar, options.recording
+    )
     out = options.out or (None if options.json else USUAL_OUT)
     files = study.write(outcome, out) if out else []
     if options.json:

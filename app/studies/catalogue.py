@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.studies import attitude, integrators, pendulum, walks
+from app.studies import attitude, gains, gait, integrators, pendulum, walks
 from app.studies.monte_carlo import WalkConfig
 from app.studies.words import Experiment
 
@@ -12,4 +12,6 @@ STUDIES: dict[str, Experiment] = {
     "attitude": Experiment(attitude.Config(), attitude.tasks, attitude.conclude),
     "walk-noise": Experiment(WalkConfig(), walks.noise_tasks, walks.noise_study),
     "walk-bias": Experiment(walks.BiasConfig(), walks.bias_tasks, walks.bias_study),
+    "gains": Experiment(gains.Config(), gains.tasks, gains.conclude),
+    "gait": Experiment(gait.Config(), gait.tasks, gait.conclude),
 }
