@@ -123,8 +123,8 @@ def conclude(config: Config, done: Sequence[Done]) -> Study:
         "gains",
         "One gain or two",
         f"{config.walks} simulated laps of the 437.5 m lane, and every recorded walk given with --recording,"
-        " under one gain for the whole stride (constant), and with one for stance and one for swing (adaptive). The"
-        " error is the distance from start to end.",
+        " under one gain for the whole stride (constant), and with one for stance and one for swing."
+        " The error is the distance from start to end.",
         asdict(config),
         tuple(_rows(config, straight, laps)),
         (_fig_92(laps), _wide_plot(surfaces)),
