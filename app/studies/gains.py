@@ -177,7 +177,9 @@ def _wide_plot(surfaces: Sequence[Surface]) -> Plot:
 
 def _table(surfaces: Sequence[Surface]) -> Table:
     head = ("walk", "distance, m", "adaptive 1.05 / 0", *(f"constant {k:g}" for k in CONSTANT))
-    lines = [(s.name, s.distance_m, s.adaptive_m, *(float(c) for c in s.constant_m)) for s in surfaces]
+    lines: list[tuple[str | float, ...]] = [
+        (s.name, s.distance_m, s.adaptive_m, *(float(c) for c in s.constant_m)) for s in surfaces
+    ]
     return Table(
         "Distance from start to end, m (Fig. 14 and Table III of the 2012 paper)", head, tuple(lines)
     )
