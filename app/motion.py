@@ -430,8 +430,25 @@ class Mark:
     text: str = ""
 
 
+@dataclass(frozen=True)
+class Play:
+    """Leave this source and play a recording of the library, by its file's name."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Rename:
+    """Give a recording of the library another name."""
+
+    name: str
+    to: str
+
+
 ReplayCommand = Pause | Step | Speed | Seek | Loop
-Command = SessionCommand | FindGains | LoadProfile | SaveProfile | ReplayCommand | Record | Mark
+Command = (
+    SessionCommand | FindGains | LoadProfile | SaveProfile | ReplayCommand | Record | Mark | Play | Rename
+)
 
 
 class Order(NamedTuple):
@@ -610,6 +627,14 @@ class Link(StrEnum):
     LOST = "lost"
 
 
+class ShelfFile(NamedTuple):
+    """A file of the library."""
+
+    name: str
+    size_bytes: int
+    changed: str  # local time, for a person
+
+
 class RecorderState(NamedTuple):
     """The recording under way, or the last one."""
 
@@ -638,6 +663,7 @@ class Status:
     sweep_progress: float | None = None  # 0…1 while it runs
     profiles: tuple[str, ...] = ()
     recording: RecorderState | None = None
+    shelf: tuple[ShelfFile, ...] = ()
 
 
 @dataclass(frozen=True)

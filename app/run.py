@@ -27,10 +27,12 @@ from app import motion as m
 from app import profiles
 from app.clocks import Clock, clock_for
 from app.door.access import Access
+from app.door.files import Files
 from app.door.front import Door
 from app.estimator import sweep as gains
 from app.formats.journal import Start
 from app.health import report
+from app.librarian import Librarian
 from app.measures import measures
 from app.outputs.recorder import Recorder
 from app.scene.page import Scene
@@ -83,8 +85,13 @@ class Viewer:
     def __init__(self, options: Options, source: Source) -> None:
         self._options = options
         self._source = source
-        settings = source.settings or options.settings
-        self._session = Session(settings, self._role, source.info.truth, options.budget_bytes, self._clock)
+        self._coming: asyncio.Queue[tuple[str, Source]] = asyncio.Queue()
+        self._librarian = Librarian(
+            options.record or options.recordings,
+            lambda line: self._say(line),
+            lambda spec, opened: self._coming.put_nowait((spec, opened)),
+        )
+        self._session = self._new_session(source.settings or options.settings, 0)
         self._recorder: Recorder | None = None
         self._posed_s = 0.0
         self._strides: dict[str, tuple[int, int]] = {}  # epoch and number of the last stride recorded
@@ -115,7 +122,7 @@ class Viewer:
         with contextlib.ExitStack() as closing:
             closing.callback(self._workers.shutdown, wait=False, cancel_futures=True)
             closing.callback(self._record, False)
-            closing.callback(self._source.close)
+            closing.callback(lambda: self._source.close())
             if self._options.record is not None:
                 self._record(True)
             scene = Scene(submit)
@@ -127,6 +134,7 @@ class Viewer:
                 health=self._health,
                 measures=lambda: measures(self._seen, self._shown, self._frames),
                 extra_head=scene.head,
+                files=Files(self._librarian.shelf.folder, self._librarian.shelf.receive),
             )
             closing.callback(door.stop)
             door.start()
@@ -144,6 +152,7 @@ class Viewer:
             asyncio.create_task(self._acquire(), name="acquire"),
             asyncio.create_task(self._reestimate(), name="re-estimate"),
             asyncio.create_task(self._watch_profiles(), name="profiles"),
+            asyncio.create_task(self._librarian.look(), name="library"),
         ]
         stop = asyncio.create_task(self._stop.wait(), name="stop")
         done, _ = await asyncio.wait([stop, *tasks], return_when=asyncio.FIRST_COMPLETED)
@@ -156,7 +165,36 @@ class Viewer:
     # --- in ----------------------------------------------------------------------------------------
 
     async def _acquire(self) -> None:
+        """Read the source; where another one comes, leave it for that one."""
         await self._prepare()
+        while True:
+            reading = asyncio.create_task(self._read(), name="read")
+            coming = asyncio.create_task(self._coming.get(), name="coming")
+            try:
+                await asyncio.wait((reading, coming), return_when=asyncio.FIRST_COMPLETED)
+                if not coming.done():
+                    return await reading
+            finally:
+                reading.cancel()
+                coming.cancel()
+            await asyncio.wait((reading,))
+            self._begin(*coming.result())
+
+    def _begin(self, spec: str, source: Source) -> None:
+        """Another source is another walk, on the same page."""
+        self._record(False)
+        self._source.close()
+        self._source, before = source, self._session
+        self._options = replace(self._options, source=spec)
+        self._session = self._new_session(source.settings or before.main.settings, before.epoch + 1)
+        self._status = replace(self._status, sweep=None, sweep_progress=None)
+        self._last_sample_s = time.monotonic()
+
+    def _new_session(self, settings: Settings, epoch: int) -> Session:
+        truth, budget = self._source.info.truth, self._options.budget_bytes
+        return Session(settings, self._role, truth, budget, self._clock, epoch)
+
+    async def _read(self) -> None:
         async for item in self._source:
             if isinstance(item, m.RestartHere):
                 self._take_order(m.Order(item, "replay", time.monotonic_ns()))
@@ -230,6 +268,8 @@ class Viewer:
                     self._source.control(command)
                 case m.Record(on):
                     self._record(on)
+                case m.Play() | m.Rename() as command:
+                    self._librarian.take(command)
                 case m.Mark(text):
                     self._mark(order.who, text)
                 case _:
@@ -388,6 +428,7 @@ class Viewer:
             loop=self._source.loop,
             position_s=self._source.position_s,
             recording=self._recorder.state if self._recorder else self._status.recording,
+            shelf=self._librarian.files,
         )
 
     def _say(self, message: str) -> None:

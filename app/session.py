@@ -40,19 +40,20 @@ class Session:
         truth: m.Truth | None = None,
         budget_bytes: int = DEFAULT_BUDGET,
         clock: Callable[[str], Clock] = lambda _: KnownClock(),
+        epoch: int = 0,
     ) -> None:
-        """``truth`` is a simulator's; over ``budget_bytes`` the oldest samples go.
+        """``truth`` is a simulator's; over ``budget_bytes`` the oldest samples go; ``epoch``: the first.
 
         ``clock`` gives each sensor's: times that are shown are on the one they share; the estimate's are not.
         """
         self.number = 0
-        self.epoch = 0
+        self.epoch = epoch
         self.wanted: Reestimation | None = None
         self._next: Reestimation | None = None  # a candidate moved while an apply was under way
         self.changes: list[m.Change] = []
         self.log: list[tuple[int, m.Order]] = []  # orders, each with the number it was taken under
         self.stores: dict[str, SensorStore] = {}
-        self.main = Track("main", settings)
+        self.main = Track(f"main{epoch}", settings)
         self.candidate: Track | None = None
         self._roles = roles
         self._truth = truth

@@ -40,7 +40,11 @@ SHELL = {
     "commands",
     "__main__",
     "__init__",
+    "librarian",
+    "shelf",
 }
+#: Parts of the shell that others of it wire in.
+WIRED = {"run": {"librarian"}, "librarian": {"shelf"}}
 CLOCKS_AND_FILES = {"asyncio", "concurrent", "glob", "http", "multiprocessing", "os", "pathlib", "selectors"}
 CLOCKS_AND_FILES |= {"shutil", "socket", "ssl", "subprocess", "tempfile", "threading", "time", "urllib"}
 ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources", "zstandard": "compressed"}
@@ -77,7 +81,7 @@ def faults(room: str, source: str) -> list[str]:
             "edge to edge": room in EDGES and other in EDGES - OPEN - {room},
             "edge to the core": room in EDGES and other in {"session", "tracks", "estimator", "gestures"},
             "strangers": frozenset({room, other}) in STRANGERS,
-            "to the shell": other in SHELL and room not in {"commands", "__main__"},
+            "to the shell": other in SHELL - WIRED.get(room, set()) and room not in {"commands", "__main__"},
         }
         found += [f"{room} imports {name}: {rule}" for rule, broken in rules.items() if broken]
     calls = {n.func.id for n in ast.walk(tree) if isinstance(n, ast.Call) and isinstance(n.func, ast.Name)}

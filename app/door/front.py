@@ -17,6 +17,7 @@ from app.door.access import Access, is_loopback
 from app.door.addresses import own_names, reachable
 from app.door.counters import Counters
 from app.door.entrance import Entrance
+from app.door.files import Files
 from app.door.gate import Gate
 from app.door.greeting import greeting
 from app.door.listening import bind
@@ -33,7 +34,8 @@ class Door:
 
     ``rules()`` says what a browser may write, by control; ``health()`` is what ``/healthz`` tells
     anybody on this machine, and ``measures()`` what ``/metrics`` does, so nothing secret. All are
-    called on the door's thread and must not block. ``extra_head`` is our own markup for the page's head.
+    called on the door's thread and must not block. ``extra_head`` is our own markup for the page's head,
+    ``files`` the library.
     """
 
     def __init__(
@@ -45,11 +47,13 @@ class Door:
         health: Callable[[], Mapping[str, object]],
         measures: Callable[[], Iterable[Measure]] = tuple,
         extra_head: str = "",
+        files: Files | None = None,
     ) -> None:
         self.counters = Counters()
         self.access = access
         self._viser_port, self._rules, self._extra_head = viser_port, rules, extra_head
         self._told = Told(health, measures)
+        self._files = files
         self._thread: threading.Thread | None = None
         self._stop: Callable[[], object] | None = None
 
@@ -114,6 +118,12 @@ class Door:
 
         gate = Gate(self.access, own_names(self.access.host))
         service = Service(
-            Entrance(gate), self._viser_port, self._rules, self._told, self._extra_head, self.counters
+            Entrance(gate),
+            self._viser_port,
+            self._rules,
+            self._told,
+            self._extra_head,
+            self.counters,
+            self._files,
         )
         await service.run(listener, secure, stopping, opened)

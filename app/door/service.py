@@ -18,6 +18,7 @@ from app.door import page
 from app.door.counters import Counters
 from app.door.entrance import GUESS_SECONDS, Entrance, guesses
 from app.door.exposition import CONTENT_TYPE, exposition, of_counters
+from app.door.files import Files
 from app.door.filter import Rules
 from app.door.gate import Refusal
 from app.door.listening import HEAD_SECONDS, Reception
@@ -49,6 +50,7 @@ class Service:
     told: Told
     extra_head: str
     counters: Counters
+    files: Files | None = None
 
     async def run(
         self,
@@ -86,6 +88,8 @@ class Service:
         application.router.add_get("/metrics", self._tell_metrics)
         application.router.add_get("/", upstream.give_page)
         application.router.add_get("/index.html", upstream.give_page)
+        if self.files is not None:
+            self.files.add_routes(application.router)
         application.router.add_get("/{path:.*}", upstream.give_file)
         return application
 

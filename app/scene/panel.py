@@ -14,6 +14,7 @@ from app.scene.beat import beat
 from app.scene.controls import Ask, Controls, Html, Input
 from app.scene.graphs import Graphs
 from app.scene.hindsight import CandidateBox, GainSearch
+from app.scene.library import Library
 from app.scene.profiles import Profiles
 from app.scene.recording import MARKER, TOGGLE, Recording, banner
 from app.scene.replaying import Replaying
@@ -59,6 +60,8 @@ class Panel:
             self._search = GainSearch(controls)
         with tabs.add_tab("Source"):
             self._source, self._log = self._source_tab(gui)
+        with tabs.add_tab("Library"):
+            self._library = Library(controls)
         with tabs.add_tab("View"):
             self._switches = self._view_tab(gui, view)
         self._graphs = _graph_panel(gui)
@@ -120,6 +123,7 @@ class Panel:
         self._log.show(figures.log(snapshot, _rate(snapshot, status)))
         self._replaying.show(status)
         self._recording.show(status)
+        self._library.show(status)
         self._box.show(snapshot)
         self._search.show(status)
         self._tuning.show(snapshot)

@@ -12,8 +12,8 @@ from app.motion import InputError, Recording
 MOST_BYTES = 2_000_000_000
 
 
-def load(path: str | Path, options: Mapping[str, str] | None = None) -> Recording:
-    """The recording at ``path``; ``options`` as typed (rate, axes, foot, device).
+def load(path: str | Path, options: Mapping[str, str] | None = None, shown: str | None = None) -> Recording:
+    """The recording at ``path``; ``options`` as typed (rate, axes, foot, device). ``shown``: what to call it.
 
     Raises ``InputError``, one line, if there is no such file or it is no recording.
     """
@@ -22,7 +22,8 @@ def load(path: str | Path, options: Mapping[str, str] | None = None) -> Recordin
         file = Path(path).expanduser()
     except RuntimeError:  # ~nobody
         raise InputError(f"{printable(str(path))}: no such user, expected a recording") from None
-    return read(printable(file.name), _bytes(file, printable(str(file))), told)
+    name = printable(shown or file.name)
+    return read(name, _bytes(file, printable(shown or str(file))), told)
 
 
 def printable(name: str) -> str:
