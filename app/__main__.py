@@ -8,7 +8,19 @@ import sys
 from collections.abc import Sequence
 
 from app import __version__
-from app.commands import emulate, export, forward, gestures, info, process, record, recover, study, walk
+from app.commands import (
+    devices,
+    emulate,
+    export,
+    forward,
+    gestures,
+    info,
+    process,
+    record,
+    recover,
+    study,
+    walk,
+)
 from app.commands.shared import Parser
 from app.motion import InputError
 
@@ -23,6 +35,7 @@ COMMANDS = {
     "gestures": gestures,
     "study": study,
     "emulate": emulate,
+    "devices": devices,
 }
 
 

@@ -25,6 +25,7 @@ class Terminal:
         self._on_data = on_data
         self._folder = Path(tempfile.mkdtemp(prefix="stridescope-")) if linked else None
         self._name = name
+        self._loop: asyncio.AbstractEventLoop | None = None  # where the host is heard
         self._master = -1
         self._hosted = False
         self.overrun = 0  # bytes that the host did not fetch in time
@@ -81,7 +82,8 @@ class Terminal:
                 poll.unregister(self._master)
                 if not events & select.POLLHUP:
                     self._hosted = True
-                    asyncio.get_running_loop().add_reader(self._master, self._read)
+                    self._loop = asyncio.get_running_loop()
+                    self._loop.add_reader(self._master, self._read)
             await asyncio.sleep(_LOOK_S)
 
     def write(self, data: bytes) -> None:
@@ -112,6 +114,7 @@ class Terminal:
             self._leave()
 
     def _leave(self) -> None:
-        if self._hosted:
-            self._hosted = False
-            asyncio.get_running_loop().remove_reader(self._master)
+        self._hosted = False
+        if self._loop is not None:
+            self._loop.remove_reader(self._master)
+            self._loop = None

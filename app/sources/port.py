@@ -71,7 +71,8 @@ class Port(asyncio.Protocol):
 
     def close(self) -> None:
         """Let go of it; what was not sent is not sent."""
-        self._transport.abort()
+        if not self._transport.is_closing():
+            self._transport.abort()
 
 
 async def open_port(path: str, baud: int) -> Port:

@@ -53,7 +53,9 @@ class Started:
 
 async def start(port: Port, wish: Wish, tell: Tell) -> Started:
     """Find the sensor that is wished for and start it; ``PortLostError`` says what to do if that fails."""
-    baud, found, heard = await _find(port, wish, tell)
+    while (answer := await find(port, wish, tell)) is None:
+        tell("nothing answers: listening again")
+    baud, found, heard = answer
     return await start_known(port, baud, found, wish.rate_hz, tell, heard)
 
 
@@ -94,19 +96,19 @@ async def converse(port: Port, script: Script[Result], tell: Tell) -> Talk[Resul
     return talk
 
 
-async def _find(port: Port, wish: Wish, tell: Tell) -> tuple[int, Found, bytes]:
-    """The baud rate, what it is, and what was heard meanwhile."""
+async def find(port: Port, wish: Wish, tell: Tell, ask: bool = True) -> tuple[int, Found, bytes] | None:
+    """The baud rate, what it is, and what was heard meanwhile; None if nothing answers.
+
+    First it listens at every rate; only into silence it asks, and not at all without ``ask``.
+    """
     if wish.device is not None and wish.baud is not None:
         port.set_baud(wish.baud)
         return wish.baud, Found(wish.device, "as you said"), b""
     bauds = _bauds(wish)
-    while True:
-        heard = await _listen_at_all(port, bauds, wish.device, tell)
-        if heard is None:
-            heard = await _ask_at_all(port, bauds, wish, tell)
-        if heard is not None:
-            return heard
-        tell("nothing answers: listening again")
+    heard = await _listen_at_all(port, bauds, wish.device, tell)
+    if heard is None and ask:
+        heard = await _ask_at_all(port, bauds, wish, tell)
+    return heard
 
 
 def _bauds(wish: Wish) -> tuple[int, ...]:
