@@ -239,6 +239,7 @@ class SourceInfo:
     dropped: Mapping[str, int] = field(default_factory=dict)
     duration_s: float | None = None  # None: live, no end known
     truth: Truth | None = None
+    line: Mapping[str, int] = field(default_factory=dict)  # what became of a live link's bytes, in words
     clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # a recording's, by sensor
 
 

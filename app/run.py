@@ -438,6 +438,7 @@ class Viewer:
     def _health(self) -> dict[str, object]:
         """For /healthz; read on the door's thread, so only what is one read."""
         told: dict[str, object] = {"link": self._source.link.value, "taken": self._session.number}
+        told["line"] = {sensor: vars(counters) for sensor, counters in self._source.counters.items()}
         return told | {"sensors": report(self._seen.health) if self._seen else {}}
 
 

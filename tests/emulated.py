@@ -18,7 +18,7 @@ from app.sources.spec import parse_spec
 from app.sources.timeline import Timeline
 from tests.formats.wire.protocols import converse, result
 
-WALK = "sim:walk?path=straight&strides=1&still_s=0.8&rate=100&noise=1&seed=4"
+WALK = "sim:walk?path=straight&strides=12&still_s=0.8&rate=100&noise=1&seed=4"
 PATIENCE_S = 60.0
 
 

@@ -40,7 +40,7 @@ def test_a_sensor_nobody_named_is_found_with_its_baud_rate(device: str, baud: in
 
 def test_a_bad_line_gives_no_false_sample_and_adds_up() -> None:
     faults = ("lost=0.3%", "flip=0.3%", "garbage=0.4%")
-    served = serve("gx1", "device=gx1&baud=38400&rate=76", 38400, faults)
+    served = serve("gx1", "device=gx1&baud=38400&rate=76", 38400, faults, enough=150)
     should = {values(sample) for sample in expected("gx1")}
     assert served.samples
     assert {values(sample) for sample in served.samples} <= should
@@ -51,7 +51,13 @@ def test_a_bad_line_gives_no_false_sample_and_adds_up() -> None:
 
 
 def test_every_byte_is_accounted_for() -> None:
-    served = serve("csv", "device=csv&baud=230400", 230400, ("lost=1%", "garbage=1%"))
+    served = serve(
+        "csv",
+        "device=csv&baud=230400",
+        230400,
+        ("lost=1%", "garbage=1%"),
+        source="sim:walk?strides=1&still_s=0.5",
+    )
     sent = served.sent
     assert sent["lost"] > 0
     assert sent["strays"] > 0
@@ -85,7 +91,7 @@ def test_a_brown_out_restarts_the_clock_and_nothing_breaks() -> None:
 
 
 def test_drift_is_in_its_stamps_and_bursts_are_in_their_coming() -> None:
-    served = serve("mip", "device=mip&baud=115200", 115200, ("drift=1000", "burst=64"))
+    served = serve("mip", "device=mip&baud=115200", 115200, ("drift=1000", "burst=64"), enough=100)
     step_ns = {b.device_ns - a.device_ns for a, b in pairwise(served.samples)}
     assert step_ns <= {10_009_999, 10_010_000, 10_010_001}
     together = sum(a.host_ns == b.host_ns for a, b in pairwise(served.samples))

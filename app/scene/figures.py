@@ -116,6 +116,8 @@ def source(snapshot: Snapshot, status: Status) -> str:
         rows.append(("Nominal rate", f"{words.number(info.rate_hz, 1)} Hz"))
     if info.dropped:
         rows.append(("Dropped on import", words.counts(dict(info.dropped))))
+    if info.line:
+        rows.append(("Line", ", ".join(f"{count} {words.plain(what)}" for what, count in info.line.items())))
     for sensor, health in snapshot.health.items():
         rows.append((words.plain(sensor, 40), _health(health.rate_hz, health.taken, health.segments)))
         rows.append(("· dropped", words.counts(dict(health.dropped))))

@@ -44,7 +44,7 @@ async def _look_at(path: str, hardware: str, ask: bool) -> Device:
         try:
             answer = await find(port, Wish(), _quietly, ask)
         finally:
-            port.close()
+            await port.close()
     except PortLostError as error:
         return Device(path, hardware, str(error))
     if answer is None:

@@ -16,6 +16,7 @@ import serial
 from serial_asyncio_fast import SerialTransport
 
 Result = TypeVar("Result")
+_CLOSE_S = 1.0
 
 
 class PortLostError(Exception):
@@ -69,10 +70,15 @@ class Port(asyncio.Protocol):
             raise PortLostError(f"{self.path} does not take {baud} baud ({error})") from None
         self._arrived.clear()
 
-    def close(self) -> None:
+    async def close(self) -> None:
         """Let go of it; what was not sent is not sent."""
         if not self._transport.is_closing():
             self._transport.abort()
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(_CLOSE_S):
+                while not self._lost:
+                    self._news.clear()
+                    await self._news.wait()
 
 
 async def open_port(path: str, baud: int) -> Port:

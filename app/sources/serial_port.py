@@ -1,13 +1,18 @@
-"""Edge: a sensor on a serial port as a live source: found, started, read, and waited for when it goes."""
+"""Edge: a sensor on a serial port as a live source: found, started, read, and waited for when it goes.
+
+It is read on a loop of its own, in a thread, so that it is stamped when it comes, not when the page is drawn.
+"""
 
 from __future__ import annotations
 
 import asyncio
+import contextlib
 import errno
 import logging
 import os
+import threading
 import time
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Callable, Mapping
 from dataclasses import dataclass
 
 from serial.tools.list_ports import comports
@@ -17,7 +22,7 @@ from app.formats.wire.catalogue import Decoder
 from app.formats.wire.identify import Found
 from app.formats.wire.stream import Counters
 from app.motion import GAP_NS, InputError, Link, Sample, SourceInfo, role_of
-from app.sources.mailbox import Mailbox
+from app.sources.inbox import Inbox
 from app.sources.port import Port, PortLostError, open_port, refusal
 from app.sources.source import Item, Live
 from app.sources.starting import Started, Wish, start, start_known
@@ -33,6 +38,8 @@ SILENT_AT_FIRST_S = 8.0
 #: Bytes that make no sample for so long: it was set to something else.
 FRUITLESS_S = 10.0
 FIRST_BAUD = 115200
+#: A port that hangs is left behind after so long.
+CLOSE_S = 1.5
 
 
 @dataclass(frozen=True)
@@ -52,8 +59,10 @@ class SerialPort(Live):
         """Nothing is opened yet; ``InputError`` if there is no such port or it may not be opened."""
         self._spec = spec
         _demand_port(spec.path)
-        self._inbox = Mailbox()
-        self._port: Port | None = None
+        self._inbox = Inbox(f"serial:{spec.path}", "")
+        self._thread: threading.Thread | None = None
+        self._closed = False
+        self._end: Callable[[], None] = _nothing
         self._started: Started | None = None
         self._decoder: Decoder | None = None
         self._seam = Seam()
@@ -73,9 +82,8 @@ class SerialPort(Live):
         mounting = f"mounting {describe(spec.axes or kind.axes)}"
         assumed = () if spec.axes else (f"{mounting}: as is usual for it (axes= says otherwise)",)
         what = f"{kind.title} at {started.baud} baud"
-        dropped = {words: count for words, count in _told(decoder.counters).items() if count}
         found = f"{started.device}: {started.evidence}"
-        return SourceInfo(name, what, roles, 0.0, (found, *assumed, *decoder.notes), dropped)
+        return SourceInfo(name, what, roles, assumed=(found, *assumed, *decoder.notes), line=_line(decoder))
 
     @property
     def link(self) -> Link:
@@ -93,24 +101,49 @@ class SerialPort(Live):
         return {self._spec.foot: self._decoder.counters} if self._decoder else {}
 
     def __aiter__(self) -> AsyncIterator[Item]:
-        return self._inbox.items(self._serve())
+        if self._thread is None:
+            self._thread = threading.Thread(target=self._run, name="serial", daemon=True)
+            self._thread.start()
+        return aiter(self._inbox)
 
     def close(self) -> None:
         """Let go of the port."""
-        if self._port is not None:
-            self._port.close()
-            self._port = None
+        self._closed = True
+        self._end()
+        if self._thread is not None:
+            self._thread.join(CLOSE_S)
 
-    # --- the port's life ---
+    # --- the port's life, in its thread ---
+
+    def _run(self) -> None:
+        try:
+            asyncio.run(self._until_closed())
+        except Exception:
+            log.exception("reading %s failed", self._spec.path)
+            self._link, self._detail = Link.LOST, f"{self._spec.path}: given up, by a fault of the program"
+
+    async def _until_closed(self) -> None:
+        loop = asyncio.get_running_loop()
+        task = loop.create_task(self._serve())
+
+        def end() -> None:
+            with contextlib.suppress(RuntimeError):  # it has ended already
+                loop.call_soon_threadsafe(task.cancel)
+
+        self._end = end
+        if self._closed:
+            task.cancel()
+        with contextlib.suppress(asyncio.CancelledError):
+            await task
 
     async def _serve(self) -> None:
         waits = iter(WAITS_S)
         while True:
-            taken = self._seam.taken
+            taken, port = self._seam.taken, None
             try:
-                self._port = await open_port(self._spec.path, FIRST_BAUD)
-                await self._start(self._port)
-                await self._read(self._port)
+                port = await open_port(self._spec.path, FIRST_BAUD)
+                await self._start(port)
+                await self._read(port)
             except PortLostError as error:
                 if self._seam.taken > taken:
                     waits = iter(WAITS_S)
@@ -121,7 +154,8 @@ class SerialPort(Live):
                 again = f"again in {wait_s:g} s" if wait_s >= 1.0 else "again now"
                 self._detail = f"{error}; trying {again}"
             finally:
-                self.close()
+                if port is not None:
+                    await port.close()
             await asyncio.sleep(wait_s)
 
     async def _start(self, port: Port) -> None:
@@ -166,11 +200,28 @@ class SerialPort(Live):
         self._link = Link.LIVE
         again = f", {self._losses} time{'' if self._losses == 1 else 's'} lost" if self._losses else ""
         self._detail = f"{started.kind.title} at {started.baud} baud{again}"
-        self._inbox.put(self._seam.join(sample) for sample in samples)
+        self._inbox.put([self._seam.join(sample) for sample in samples])
         return True
 
     def _tell(self, what: str) -> None:
         self._detail = f"{self._spec.path}: {what}"
+
+
+def _line(decoder: Decoder) -> dict[str, int]:
+    """What became of the bytes, in words."""
+    counters = decoder.counters
+    counted = {
+        "packets": counters.packets,
+        "that did not hold": counters.bad_checksum,
+        "bytes of rubbish": counters.bytes_skipped,
+        "unusable readings": counters.dropped,
+        "lost by the sensor's own count": counters.lost,
+    }
+    return {words: count for words, count in counted.items() if count}
+
+
+def _nothing() -> None:
+    """Nothing is open."""
 
 
 class Seam:
@@ -203,15 +254,6 @@ def _another(known: Started | None, started: Started) -> bool:
         return True
     before, now = (getattr(each.setup, "serial", "") for each in (known, started))
     return bool(before and now and before != now)
-
-
-def _told(counters: Counters) -> dict[str, int]:
-    return {
-        "packets that did not hold": counters.bad_checksum,
-        "bytes of rubbish": counters.bytes_skipped,
-        "readings unusable": counters.dropped,
-        "lost by the sensor's count": counters.lost,
-    }
 
 
 def _demand_port(path: str) -> None:

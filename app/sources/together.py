@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Mapping, Sequence
+import asyncio
+import logging
+from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 
 from app.formats.wire.stream import Counters
 from app.motion import Link, Sample, SourceInfo
-from app.sources.mailbox import Mailbox
+from app.sources.inbox import Inbox
 from app.sources.source import Item, Live, Source
+
+log = logging.getLogger(__name__)
 
 #: The link of all is the worst of each: what stands first here.
 _WORST = (Link.LOST, Link.WAITING, Link.LIVE)
@@ -18,24 +22,21 @@ class Together(Live):
 
     def __init__(self, sources: Sequence[Source]) -> None:
         self._sources = tuple(sources)
-        self._inbox = Mailbox()
+        self._inbox = Inbox("together", "")
 
     @property
     def info(self) -> SourceInfo:
         """All sensors; what is assumed stands with its foot's name."""
         infos = [source.info for source in self._sources]
         formats = sorted({info.format for info in infos})
-        dropped: dict[str, int] = {}
-        for info in infos:
-            for reason, count in info.dropped.items():
-                dropped[reason] = dropped.get(reason, 0) + count
         return SourceInfo(
             name=", ".join(info.name for info in infos),
             format=" and ".join(formats),
             sensors={sensor: role for info in infos for sensor, role in info.sensors.items()},
             rate_hz=max(info.rate_hz for info in infos),
             assumed=tuple(f"{_names(info)}: {sentence}" for info in infos for sentence in info.assumed),
-            dropped=dropped,
+            dropped=summed(info.dropped for info in infos),
+            line=summed(info.line for info in infos),
         )
 
     @property
@@ -57,17 +58,38 @@ class Together(Live):
         return {sensor: kept for source in self._sources for sensor, kept in source.counters.items()}
 
     def __aiter__(self) -> AsyncIterator[Item]:
-        return self._inbox.items(*map(self._take, self._sources))
+        return self._read()
 
     def close(self) -> None:
         """Let go of all."""
         for source in self._sources:
             source.close()
 
+    async def _read(self) -> AsyncIterator[Item]:
+        tasks = [asyncio.create_task(self._take(source)) for source in self._sources]
+        try:
+            async for item in self._inbox:
+                yield item
+        finally:
+            for task in tasks:
+                task.cancel()
+
     async def _take(self, source: Source) -> None:
-        async for item in source:
-            if isinstance(item, Sample):  # a live source gives nothing else
-                self._inbox.put((item,))
+        try:
+            async for item in source:
+                if isinstance(item, Sample):  # a live source gives nothing else
+                    self._inbox.put((item,))
+        except Exception:
+            log.exception("%s failed", source.info.name)
+
+
+def summed(each: Iterable[Mapping[str, int]]) -> dict[str, int]:
+    """Counts by their words, added up."""
+    total: dict[str, int] = {}
+    for counts in each:
+        for words, count in counts.items():
+            total[words] = total.get(words, 0) + count
+    return total
 
 
 def _names(info: SourceInfo) -> str:
