@@ -11,6 +11,7 @@ from contextlib import suppress
 from app.motion import InputError, RestartHere, Sample
 from app.outputs.forwarder import Sender, sender_to
 from app.sources.opening import open_source
+from app.sources.phone import PhoneSource
 from app.sources.source import Source
 
 #: A source that is faster than the clock (``speed=0``) waits for the network here.
@@ -22,6 +23,8 @@ _LAST_S = 0.5
 def forward(spec: str, to: str, token: str | None, limit_bytes: int, tell: Callable[[str], None]) -> str:
     """Forward until the source ends or Ctrl-C; what became of the samples, in one line."""
     source = open_source(spec, finish=True, changes=False)
+    if isinstance(source, PhoneSource):
+        raise InputError(f"--source {spec}: a phone comes by the page's port, and needs no forwarder")
     try:
         return asyncio.run(_forward(source, to, token, limit_bytes, tell))
     finally:

@@ -13,6 +13,7 @@ from app.motion import InputError, Order, RecorderState, RestartHere, Sample
 from app.outputs.recorder import Recorder
 from app.settings import Settings
 from app.sources.opening import open_source
+from app.sources.phone import PhoneSource
 from app.sources.source import Source
 
 #: A recording without a browser may take longer to end: nobody waits for the page.
@@ -22,6 +23,8 @@ CLOSE_S = 30.0
 def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str], None]) -> RecorderState:
     """Record until the source ends, ``seconds`` are over or Ctrl-C; what was recorded."""
     source = open_source(spec, finish=True, changes=False)
+    if isinstance(source, PhoneSource):
+        raise InputError(f"{spec}: a phone comes by the page's port: walk --source {spec} --record {folder}")
     recorder = Recorder(folder, "papers", spec, source.info, source.made_by)
     tell(f"Recording to {recorder.path}  (Ctrl-C ends it)")
     recorder.start(Start(Settings(), Settings(), False))

@@ -39,6 +39,7 @@ from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
 from app.sources.opening import open_source
+from app.sources.phone import PhoneSource
 from app.sources.source import Source
 from app.tracks import Reestimation, Track
 from app.warm import warm_up
@@ -135,6 +136,7 @@ class Viewer:
                 measures=lambda: measures(self._seen, self._shown, self._frames),
                 extra_head=scene.head,
                 files=Files(self._librarian.shelf.folder, self._librarian.shelf.receive),
+                taker=self._source if isinstance(self._source, PhoneSource) else None,
             )
             closing.callback(door.stop)
             door.start()

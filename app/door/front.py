@@ -20,6 +20,7 @@ from app.door.entrance import Entrance
 from app.door.files import Files
 from app.door.gate import Gate
 from app.door.greeting import greeting
+from app.door.ingest import Ingest, Taker
 from app.door.listening import bind
 from app.door.service import Service, Told
 from app.motion import GuiRule, Measure
@@ -35,7 +36,7 @@ class Door:
     ``rules()`` says what a browser may write, by control; ``health()`` is what ``/healthz`` tells
     anybody on this machine, and ``measures()`` what ``/metrics`` does, so nothing secret. All are
     called on the door's thread and must not block. ``extra_head`` is our own markup for the page's head,
-    ``files`` the library.
+    ``files`` the library, ``taker`` takes the samples that phones send.
     """
 
     def __init__(
@@ -48,12 +49,14 @@ class Door:
         measures: Callable[[], Iterable[Measure]] = tuple,
         extra_head: str = "",
         files: Files | None = None,
+        taker: Taker | None = None,
     ) -> None:
         self.counters = Counters()
         self.access = access
         self._viser_port, self._rules, self._extra_head = viser_port, rules, extra_head
         self._told = Told(health, measures)
         self._files = files
+        self._taker = taker
         self._thread: threading.Thread | None = None
         self._stop: Callable[[], object] | None = None
 
@@ -124,6 +127,7 @@ class Door:
             self._told,
             self._extra_head,
             self.counters,
+            Ingest(gate, self._taker),
             self._files,
         )
         await service.run(listener, secure, stopping, opened)

@@ -21,6 +21,7 @@ from app.door.exposition import CONTENT_TYPE, exposition, of_counters
 from app.door.files import Files
 from app.door.filter import Rules
 from app.door.gate import Refusal
+from app.door.ingest import Ingest
 from app.door.listening import HEAD_SECONDS, Reception
 from app.door.upstream import VISITOR, Upstream, open_session, say, say_starting
 from app.motion import Measure
@@ -50,6 +51,7 @@ class Service:
     told: Told
     extra_head: str
     counters: Counters
+    ingest: Ingest
     files: Files | None = None
 
     async def run(
@@ -86,6 +88,7 @@ class Service:
         application.on_response_prepare.append(_add_safe_headers)
         application.router.add_get("/healthz", self._tell_health)
         application.router.add_get("/metrics", self._tell_metrics)
+        self.ingest.add_routes(application.router)
         application.router.add_get("/", upstream.give_page)
         application.router.add_get("/index.html", upstream.give_page)
         if self.files is not None:
@@ -95,7 +98,8 @@ class Service:
 
     @web.middleware
     async def _guard(self, request: web.Request, handler: _Handler) -> web.StreamResponse:
-        judged = self.entrance.judge(request)
+        mine = self.ingest if self.ingest.concerns(request) else self.entrance
+        judged = mine.judge(request)
         if isinstance(judged, Refusal):
             self.counters.refuse(judged.what)
             log.info("refused a request from %s: %s", request.remote, judged.line)

@@ -9,7 +9,7 @@ from typing import Any
 import viser
 
 from app.motion import ResetHeading, RestartHere, Snapshot, Status
-from app.scene import figures
+from app.scene import figures, phones
 from app.scene.beat import beat
 from app.scene.controls import Ask, Controls, Html, Input
 from app.scene.graphs import Graphs
@@ -49,6 +49,7 @@ class Panel:
         gui.main_panel.dock_right()
         gui.main_panel.set_width(WIDTH_PX)
         self._header, self._message, self._feet = controls.html(), controls.html(), controls.html()
+        self._phones = [controls.html()]  # until there is a foot; then under Source
         self._soundness = Soundness(controls)
         self._replaying = Replaying(controls)
         tabs = gui.add_tab_group()
@@ -70,6 +71,7 @@ class Panel:
         with gui.add_folder("Recording"):
             self._recording = Recording(self._controls)
         source = self._controls.html()
+        self._phones.append(self._controls.html())
         with gui.add_folder("Profiles"):
             self._profiles = Profiles(self._controls)
         with gui.add_folder("Changes"):
@@ -118,6 +120,8 @@ class Panel:
         self._header.show(figures.header(status) + beat(time.time()))
         self._message.show(banner(status) + figures.message(snapshot, status))
         self._feet.show(figures.feet(snapshot))
+        self._phones[0].show("" if snapshot.main.feet else phones.code(status))
+        self._phones[1].show(phones.code(status))
         self._soundness.show(snapshot, status)
         self._source.show(figures.source(snapshot, status) + tables(snapshot))
         self._log.show(figures.log(snapshot, _rate(snapshot, status)))

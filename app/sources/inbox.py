@@ -101,7 +101,8 @@ class Inbox(Live):
         return self._read()
 
     async def _read(self) -> AsyncIterator[Item]:
-        self._loop = asyncio.get_running_loop()
+        with self._lock:
+            self._loop, self._news, self._woken = asyncio.get_running_loop(), asyncio.Event(), False
         while True:
             with self._lock:
                 batch, self._waiting = self._waiting, []

@@ -10,6 +10,7 @@ from app.motion import InputError, Recording, Truth
 from app.simulate.gestures import make_gestures
 from app.simulate.walk import make_walk
 from app.sources.files import load
+from app.sources.phone import PhoneSource
 from app.sources.replay import Replay
 from app.sources.serial_spec import open_serial
 from app.sources.source import Source
@@ -48,7 +49,7 @@ def open_live(spec: Spec) -> Source:
         return open_serial(spec)
     if spec.kind == "ws":
         return WsSource(spec)
-    return UdpSource(spec)
+    return UdpSource(spec) if spec.kind == "udp" else PhoneSource(spec)
 
 
 def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:
