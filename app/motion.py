@@ -568,6 +568,21 @@ class FootView(NamedTuple):
     trust: Trust | None = None  # None: the estimator does not know
 
 
+class GuideView(NamedTuple):
+    """A calibration under way: what to do now, and how far it is."""
+
+    sensor: str
+    step: int  # done so far
+    steps: int
+    words: str
+    picture: str  # ``x+``: x down; ``x-``: x up; ``x*``: a round about x
+    held: float  # 0…1, how long it lies as it should
+    note: str
+    coverage: float  # 0…1 of all directions of the field
+    directions: frozenset[int]  # which of 6 × 12 parts of them, band by band from the field's −z
+    done: bool
+
+
 class TrackView(NamedTuple):
     """One named track, now."""
 

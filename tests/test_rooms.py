@@ -25,7 +25,7 @@ HEART = {
     "rotation",
     "world",
 }
-HEART |= {"estimator", "gestures", "simulate", "formats", "studies"}
+HEART |= {"calibration", "estimator", "gestures", "simulate", "formats", "studies"}
 EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed", "workers", "measures"}
 EDGES |= {"opinions"}
 SHELL = {

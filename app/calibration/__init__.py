@@ -1,0 +1,1 @@
+"""Heart: null points, scales and axes of a sensor, found without equipment."""
