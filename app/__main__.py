@@ -9,7 +9,9 @@ from collections.abc import Sequence
 
 from app import __version__
 from app.commands import (
+    calibrate,
     devices,
+    doctor,
     emulate,
     export,
     forward,
@@ -36,6 +38,8 @@ COMMANDS = {
     "study": study,
     "emulate": emulate,
     "devices": devices,
+    "calibrate": calibrate,
+    "doctor": doctor,
 }
 
 

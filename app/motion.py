@@ -241,6 +241,7 @@ class SourceInfo:
     truth: Truth | None = None
     line: Mapping[str, int] = field(default_factory=dict)  # what became of a live link's bytes, in words
     clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # a recording's, by sensor
+    serials: Mapping[str, str] = field(default_factory=dict)  # serial numbers, by sensor, where known
 
 
 class InputError(ValueError):

@@ -27,7 +27,7 @@ HEART = {
 }
 HEART |= {"calibration", "estimator", "gestures", "simulate", "formats", "studies"}
 EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed", "workers", "measures"}
-EDGES |= {"opinions"}
+EDGES |= {"opinions", "calibrations"}
 SHELL = {
     "run",
     "batch",
@@ -37,6 +37,9 @@ SHELL = {
     "export",
     "forward",
     "study",
+    "calibrate",
+    "doctor",
+    "before",
     "commands",
     "__main__",
     "__init__",

@@ -45,7 +45,7 @@ class Correction:
 
     def table(self, read: Floats) -> Floats:
         """Readings [n, 3] made true."""
-        return (read - np.array(self.null)) @ np.array(self.scale).T
+        return np.asarray((read - np.array(self.null)) @ np.array(self.scale).T)
 
 
 @dataclass(frozen=True)

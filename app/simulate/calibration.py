@@ -114,7 +114,7 @@ def _motion(options: CalibrationOptions, random: np.random.Generator) -> tuple[F
         rates.append(speeds[:, np.newaxis] * about)
         start = poses[-1][-1]
     turned = np.concatenate(poses)
-    times: Floats = np.arange(len(turned)) * step
+    times = np.arange(len(turned), dtype=np.float64) * step
     return times, turned, np.asarray(np.concatenate(rates))
 
 

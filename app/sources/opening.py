@@ -7,6 +7,7 @@ import logging
 import numpy as np
 
 from app.motion import InputError, Recording, Truth
+from app.simulate.calibration import make_calibration
 from app.simulate.gestures import make_gestures
 from app.simulate.walk import make_walk
 from app.sources.files import load
@@ -62,12 +63,14 @@ def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:
     return recording, _truth_of(recording)
 
 
-def _simulated(spec: Spec) -> tuple[Recording, Truth]:
+def _simulated(spec: Spec) -> tuple[Recording, Truth | None]:
     if spec.target == "gestures":
         gestures = make_gestures(spec.options)
         return gestures.recording, gestures.truth
+    if spec.target == "calibration":
+        return make_calibration(spec.options).recording, None
     if spec.target != "walk":
-        raise InputError(f"sim:{spec.target}: expected sim:walk or sim:gestures")
+        raise InputError(f"sim:{spec.target}: expected sim:walk, sim:gestures or sim:calibration")
     walk = make_walk(spec.options)
     return walk.recording, walk.truth
 

@@ -1,0 +1,97 @@
+"""Shell: a calibration without a browser: a source's samples to the guide, its words to the terminal."""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import signal
+import time
+from collections.abc import Callable
+
+from app.calibration.guide import GRAVITY_MPS2, Guide
+from app.calibration.words import UNITS, Calibration
+from app.calibrations import key_of
+from app.motion import GuideView, InputError, Sample
+from app.sources.opening import open_source
+from app.sources.source import Source
+
+#: Between looks at how far it is.
+LOOK_S = 0.2
+
+Results = tuple[Calibration, Calibration]
+
+
+def calibrate(
+    spec: str,
+    sensor: str | None,
+    look: Callable[[GuideView], None],
+    gravity_mps2: float = GRAVITY_MPS2,
+    field_ut: float | None = None,
+) -> Results:
+    """Lead through a calibration of one sensor of a source: the fits and the report's formulas.
+
+    ``sensor``: the first that is heard, if None. ``look`` is shown the guide's view as it changes. Raises
+    ``InputError`` where the source ends first, or the readings do not allow it.
+    """
+    source = open_source(spec, finish=True, changes=False)
+    try:
+        guide = asyncio.run(_lead(source, sensor, look))
+    finally:
+        source.close()
+    look(guide.view())
+    made = time.strftime("%Y-%m-%dT%H:%M:%S%z")
+    try:
+        return guide.results(made, gravity_mps2, field_ut)
+    except ValueError as error:
+        raise InputError(f"{spec}: no calibration: {error}; do it again") from None
+
+
+async def _lead(source: Source, sensor: str | None, look: Callable[[GuideView], None]) -> Guide:
+    task = asyncio.create_task(_listen(source, sensor, look))
+    loop = asyncio.get_running_loop()
+    for number in (signal.SIGINT, signal.SIGTERM):
+        loop.add_signal_handler(number, task.cancel)
+    with contextlib.suppress(asyncio.CancelledError):
+        return await task
+    raise InputError("calibration given up; nothing was saved")
+
+
+async def _listen(source: Source, sensor: str | None, look: Callable[[GuideView], None]) -> Guide:
+    guide, looked_s, step = None, 0.0, -1
+    async for item in source:
+        if not isinstance(item, Sample) or item.sensor != (sensor or item.sensor):
+            continue
+        sensor = item.sensor
+        guide = guide or Guide(key_of(source.info, sensor))
+        guide.add(item)
+        if guide.done:
+            return guide
+        now_s = time.monotonic()
+        if now_s >= looked_s + LOOK_S or len(guide.legs) != step:
+            looked_s, step = now_s, len(guide.legs)
+            look(guide.view())
+    if guide is None:
+        heard = ", ".join(source.info.sensors) or "none"
+        raise InputError(f"{source.info.name}: no sample of sensor {sensor!r}, expected one of {heard}")
+    view = guide.view()
+    raise InputError(
+        f"{source.info.name}: ended at step {view.step + 1} of {view.steps} ({view.words}): nothing was saved"
+    )
+
+
+def table(fit: Calibration, report: Calibration) -> list[str]:
+    """Both, side by side, for a person: null and scale of each axis with units."""
+    lines = [f"{'':14}{'fit':>34}{'report, eq. (1) to (5)':>34}"]
+    for kind, unit in UNITS.items():
+        one, other = getattr(fit, kind), getattr(report, kind)
+        if one is None:
+            lines.append(f"{kind}: no magnetometer")
+            continue
+        for i, axis in enumerate("xyz"):
+            cells = [
+                f"null {c.null[i]:+9.4f} {unit:5} scale {c.scale[i][i]:8.5f}" if c else "not told"
+                for c in (one, other)
+            ]
+            lines.append(f"{kind + ' ' + axis:10}{cells[0]:>38}{cells[1]:>38}")
+    lines += [f"  {name}: {value:.2g}" for name, value in fit.residuals.items()]
+    return lines

@@ -1,0 +1,92 @@
+"""Edge: the user's configuration folder: one calibration for each sensor, as JSON."""
+
+from __future__ import annotations
+
+import hashlib
+from pathlib import Path
+
+import platformdirs
+
+from app.calibration.words import Calibration, from_json, to_json
+from app.motion import InputError, SourceInfo
+
+MOST_BYTES = 64 * 1024
+
+
+def folder() -> Path:
+    """Where calibrations live; it need not exist."""
+    return Path(platformdirs.user_config_dir("stridescope", appauthor=False)) / "calibrations"
+
+
+def key_of(info: SourceInfo, sensor: str) -> str:
+    """What names a sensor: its serial number, else where it is read and what it is called there."""
+    return info.serials.get(sensor) or f"{info.name} {sensor}"
+
+
+def meant_for(info: SourceInfo) -> bool:
+    """Whether calibrations are applied to a source: a recording has had its own, if it needed one."""
+    return info.duration_s is None or info.format == "simulator"
+
+
+def path_of(key: str) -> Path:
+    """The file for a sensor: a readable name, and enough of a digest that no two share one."""
+    plain = "".join(c if c.isascii() and c.isalnum() else "-" for c in key).strip("-")[:60]
+    return folder() / f"{plain}-{hashlib.sha256(key.encode()).hexdigest()[:8]}.json"
+
+
+def load(key: str) -> Calibration | None:
+    """The sensor's calibration; None where there is none. A damaged file is ``InputError``."""
+    path = path_of(key)
+    try:
+        if path.stat().st_size > MOST_BYTES:
+            raise InputError(f"calibration {path}: {path.stat().st_size} bytes, expected one of ours")
+        text = path.read_text("utf-8")
+    except FileNotFoundError:
+        return None
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"calibration {path}: cannot be read: {error}") from None
+    found = from_json(path.name, text)
+    if found.sensor != key:
+        raise InputError(f"calibration {path}: it is of {found.sensor!r}, expected {key!r}")
+    return found
+
+
+def save(calibration: Calibration) -> Path:
+    """Keep a calibration; the one before it stays beside it as ``.before``."""
+    path = path_of(calibration.sensor)
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        new = path.with_suffix(".new")
+        new.write_text(to_json(calibration), "utf-8")
+        if path.exists():
+            path.replace(path.with_suffix(".before"))
+        new.replace(path)
+        path.with_suffix(".undone").unlink(missing_ok=True)
+    except OSError as error:
+        raise InputError(f"calibration: cannot be saved in {path.parent}: {error.strerror}") from None
+    return path
+
+
+def undo(key: str) -> bool:
+    """Use it no more: the file is kept as ``.undone``. Whether there was one."""
+    return _move(path_of(key), path_of(key).with_suffix(".undone"))
+
+
+def redo(key: str) -> bool:
+    """Use the one that was undone. Whether there was one."""
+    return _move(path_of(key).with_suffix(".undone"), path_of(key))
+
+
+def was_undone(key: str) -> bool:
+    """Whether there is one to go back to."""
+    return path_of(key).with_suffix(".undone").is_file()
+
+
+def _move(old: Path, new: Path) -> bool:
+    try:
+        old.replace(new)
+    except FileNotFoundError:
+        return False
+    except OSError as error:
+        raise InputError(f"calibration {old}: cannot be moved: {error.strerror}") from None
+    return True

@@ -1,0 +1,37 @@
+"""Shell: what this machine lacks for a walk."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+from app.commands.shared import Commands, add_json
+
+MARKS = {"ok": "ok     ", "advice": "advice ", "problem": "PROBLEM"}
+
+
+def add(commands: Commands) -> None:
+    """Its options."""
+    seen = commands.add_parser("doctor", help="what this machine lacks for a walk, and the remedy")
+    seen.add_argument(
+        "--record", metavar="DIR", type=Path, default=Path("recordings"), help="to be recorded to"
+    )
+    seen.add_argument("--port", type=int, default=8080)
+    add_json(seen)
+
+
+def run(options: argparse.Namespace) -> int:
+    """Look, and tell."""
+    from app import doctor
+
+    findings = doctor.examine(doctor.Machine(recordings=options.record, port=options.port))
+    well = all(finding.state != "problem" for finding in findings)
+    if options.json:
+        print(json.dumps({"ok": well, "findings": [finding._asdict() for finding in findings]}))
+        return 0
+    for finding in findings:
+        print(f"{MARKS[finding.state]}  {finding.what}: {finding.told}")
+        if finding.remedy:
+            print(f"           → {finding.remedy}")
+    return 0
