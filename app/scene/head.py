@@ -20,6 +20,6 @@ def head(keys: dict[str, tuple[str, str]], resets: list[str]) -> str:
         sky, horizon = css(theme(dark).sky), css(theme(dark).horizon)
         style = style.replace(f"sky-{name}", f"linear-gradient({sky}, {horizon} 65%)")
     script = (HERE / "page.js").read_text(encoding="utf-8").replace("KEY_PRESSES", json.dumps(presses))
-    script += (HERE / "present.js").read_text(encoding="utf-8")
-    script += (HERE / "library.js").read_text(encoding="utf-8")
+    for name in ("present.js", "watching.js", "library.js"):
+        script += (HERE / name).read_text(encoding="utf-8")
     return f"<title>Stridescope</title><style>{style}</style><script>{script}</script>"

@@ -16,7 +16,8 @@
       event.preventDefault(); // no scrolling, and no second press of the button that has the focus
       if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
     }
-    if (presses[key] && viewer && viewer.sendMessage) viewer.sendMessage(presses[key]);
+    const watching = document.documentElement.dataset.visitor === "viewer";
+    if (presses[key] && !watching && viewer && viewer.sendMessage) viewer.sendMessage(presses[key]);
   });
   // viser retries a lost connection only while the document has the focus; a wall display has none.
   document.hasFocus = () => document.visibilityState === "visible";

@@ -1,10 +1,11 @@
 // Keeps the page on the present: says how old it is when nothing comes, and connects anew after a sleep.
 (() => {
-  const TICK_MS = 250, STALE_MS = 2200, SLEPT_MS = 3000, SILENT_TICKS = 24;
+  const TICK_MS = 250, STALE_MS = 2200, SLEPT_MS = 3000, SILENT_TICKS = 40, AGAIN_TICKS = 240;
   let link = null; // viser's worker, which holds the websocket
   let offset = Infinity; // the smallest difference of the two clocks since the connection began
   let shown = "", sign = null;
   let silent = 0; // ticks in which nothing came; a page that is busy drawing ticks as slowly as it hears
+  let patience = SILENT_TICKS; // longer when a new connection brought no beat: the program itself stands still
 
   const post = Worker.prototype.postMessage;
   Worker.prototype.postMessage = function (message, ...rest) {
@@ -29,6 +30,7 @@
     const difference = Date.now() - 1000 * Number(beat.dataset.ssBeat);
     if (beat.dataset.ssBeat !== shown) {
       shown = beat.dataset.ssBeat;
+      patience = SILENT_TICKS;
       offset = Math.min(offset, difference);
     }
     return difference - offset;
@@ -58,7 +60,10 @@
     if (document.hidden) return;
     look();
     if (shown) silent += 1; // a page without a beat is not waited for
-    if (silent >= SILENT_TICKS) connectAnew();
+    if (silent >= patience) {
+      patience = AGAIN_TICKS;
+      connectAnew();
+    }
   }, TICK_MS);
   // A thread with nothing to do tells a sleep from a page that is busy drawing.
   const watch = `let last = Date.now(); setInterval(() => {
