@@ -13,11 +13,11 @@ from typing import NamedTuple
 import numpy as np
 
 from app.formats import mcap
-from app.formats.records import MESSAGE, At, last_doubles, table
+from app.formats.records import MESSAGE, At, last_doubles, tables
 from app.motion import Floats, Ints
 
 #: Bytes of records looked through at once: many chunks are small.
-_TOGETHER = 2**20
+_TOGETHER = 8 * 2**20
 
 
 class Doubles(NamedTuple):
@@ -75,30 +75,40 @@ def gather(data: bytes, want: Want) -> Contents:
 
 def _pages(data: bytes, channels: dict[int, mcap.Channel]) -> Iterator[_Page]:
     """The messages of many chunks at once; channels are put where they belong on the way."""
-    records: list[bytes] = []
-    tables: list[Ints] = []
-    size = place = 0
+    place = 0
+    for chunks in _together(data):
+        records = b"".join(chunks)
+        rows = _believed(records, chunks, channels)
+        rows = rows[rows[:, At.OPCODE] == MESSAGE]
+        yield _Page(records, rows, place + np.arange(len(rows)))
+        place += len(rows)
+
+
+def _together(data: bytes) -> Iterator[list[bytes]]:
+    """The file's chunks in lists of some size."""
+    chunks: list[bytes] = []
+    size = 0
     for chunk in mcap.whole_chunks(data):
-        rows = table(chunk)
-        if rows is None or not mcap.define(chunk, rows, channels):
-            continue
-        rows[:, At.BEGIN :] += size
-        records.append(chunk)
-        tables.append(rows)
+        chunks.append(chunk)
         size += len(chunk)
         if size > _TOGETHER:
-            page = _page(records, tables, place)
-            place += len(page.rows)
-            yield page
-            records, tables, size = [], [], 0
-    if records:
-        yield _page(records, tables, place)
+            yield chunks
+            chunks, size = [], 0
+    if chunks:
+        yield chunks
 
 
-def _page(records: list[bytes], tables: list[Ints], place: int) -> _Page:
-    rows = np.concatenate(tables)
-    rows = rows[rows[:, At.OPCODE] == MESSAGE]
-    return _Page(b"".join(records), rows, place + np.arange(len(rows)))
+def _believed(records: bytes, chunks: list[bytes], channels: dict[int, mcap.Channel]) -> Ints:
+    """The rows of all chunks but of those whose records or definitions make no sense."""
+    bounds = np.cumsum([0, *map(len, chunks)])
+    rows, counts = tables(records, bounds)
+    ends = np.cumsum(np.maximum(counts, 0))
+    keep = np.ones(len(rows), np.bool_)
+    others = np.searchsorted(ends, np.flatnonzero(rows[:, At.OPCODE] != MESSAGE), side="right")
+    for i in np.unique(others).tolist():  # chunks that hold more than messages
+        own = slice(int(ends[i] - counts[i]), int(ends[i]))
+        keep[own] = mcap.define(records, rows[own], channels)
+    return rows[keep]
 
 
 def _sort(

@@ -12,7 +12,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.compressed import LARGEST, Unpacker, pack
+from app.compressed import LARGEST, pack, unpack_all
 from app.formats.records import MESSAGE, At, table
 from app.motion import Ints
 
@@ -25,6 +25,7 @@ _COMPRESSION = b"\x04\x00\x00\x00zstd"  # as it stands in every chunk
 _RECORD = struct.Struct("<BQ")
 _CHUNK_HEAD = struct.Struct("<BQQQQI8sQ")  # opcode, length, start, end, size, crc, "zstd", packed size
 _MARK_AT = 37  # of the compression's name in a chunk
+_TOGETHER = 4 * 2**20  # bytes of records unpacked at once
 _MESSAGE_HEAD = struct.Struct("<BQHIQQ")
 
 
@@ -206,30 +207,62 @@ def is_closed(data: bytes) -> bool:
     return data.endswith(MAGIC) and len(data) > 2 * len(MAGIC)
 
 
+class _Found(NamedTuple):
+    """A chunk by its own words: where it is, and what its records should be."""
+
+    begin: int
+    end: int
+    frame: bytes
+    size: int
+    crc: int
+
+
 def whole_chunks(data: bytes) -> Iterator[bytes]:
     """The records of every chunk whose CRC is good, in the file's order."""
-    unpack = Unpacker()
-    position = len(MAGIC)
-    while (mark := data.find(_COMPRESSION, position + _MARK_AT)) >= 0:
-        begin = mark - _MARK_AT
-        records, length = _unpacked(data, begin, unpack)
-        if records is None:
-            position = begin + 1
-        else:
+    position, together = len(MAGIC), _TOGETHER
+    while found := _chunks_from(data, position, together):
+        together = min(2 * together, _TOGETHER)
+        unpacked = unpack_all([chunk.frame for chunk in found], [chunk.size for chunk in found])
+        for chunk, records in zip(found, unpacked, strict=True):
+            if records is None or _crc(records) != chunk.crc:
+                # it may have said a false length: look from behind its first byte, and in small steps for now
+                position, together = chunk.begin + 1, 1
+                break
+            position = chunk.end
             yield records
-            position = begin + length
 
 
-def _unpacked(data: bytes, begin: int, unpack: Unpacker) -> tuple[bytes | None, int]:
-    """The records of a chunk that begins there, if one does, and the chunk's length."""
+def _chunks_from(data: bytes, position: int, together: int) -> list[_Found]:
+    """Some chunks that follow one another if each is as long as it says."""
+    found: list[_Found] = []
+    size = 0
+    while size < together and (mark := data.find(_COMPRESSION, position + _MARK_AT)) >= 0:
+        begin = mark - _MARK_AT
+        chunk = _chunk_at(data, begin)
+        position = begin + 1 if chunk is None else chunk.end
+        if chunk is not None:
+            found.append(chunk)
+            size += chunk.size
+    return found
+
+
+def _chunk_at(data: bytes, begin: int) -> _Found | None:
+    """The chunk that begins there, if one does."""
     if len(data) - begin < _CHUNK_HEAD.size:
-        return None, 0
+        return None
     opcode, _, _, _, size, crc, _, packed = _CHUNK_HEAD.unpack_from(data, begin)
-    length = _CHUNK_HEAD.size + packed
-    if opcode != _CHUNK or size > LARGEST or begin + length > len(data):
-        return None, 0
-    records = unpack(data[begin + _CHUNK_HEAD.size : begin + length], size)
-    return (records if records is not None and zlib.crc32(records) == crc else None), length
+    end = begin + _CHUNK_HEAD.size + packed
+    if opcode != _CHUNK or size > LARGEST or end > len(data):
+        return None
+    return _Found(begin, end, data[begin + _CHUNK_HEAD.size : end], size, crc)
+
+
+def _crc(records: bytes) -> int:
+    """zlib's, piece by piece: for more than 5 kB it would hand over the interpreter's lock each time."""
+    crc, view = 0, memoryview(records)
+    for begin in range(0, len(view), 4096):
+        crc = zlib.crc32(view[begin : begin + 4096], crc)
+    return crc
 
 
 def _messages(records: bytes, channels: dict[int, Channel]) -> list[Message] | None:

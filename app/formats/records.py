@@ -77,12 +77,35 @@ def _copy(octets: Octets, begins: Ints, columns: Ints, copied: Octets) -> None:
                 copied[i, 8 * j + k] = octets[begin + k]
 
 
+@kernel
+def _fill_all(octets: Octets, bounds: Ints, rows: Ints, counts: Ints) -> int:
+    """``_fill`` for each chunk between ``bounds`` [k + 1], one behind the other; how many rows in all."""
+    total = 0
+    for i in range(counts.shape[0]):
+        begin, end = bounds[i], bounds[i + 1]
+        counts[i] = _fill(octets[begin:end], rows[total:])
+        for row in range(total, total + max(counts[i], 0)):
+            rows[row, 5] += begin
+            rows[row, 6] += begin
+        total += max(counts[i], 0)
+    return total
+
+
 def table(records: bytes) -> Ints | None:
     """All records of a chunk as rows [n, 7] by ``At``; None if they are not what a chunk holds."""
+    rows, counts = tables(records, np.array([0, len(records)]))
+    return rows if counts[0] >= 0 else None
+
+
+def tables(records: bytes, bounds: Ints) -> tuple[Ints, Ints]:
+    """The rows of many chunks, chunk i from ``bounds[i]`` to ``bounds[i + 1]``, and how many each has.
+
+    −1, and no row, for one that is not what a chunk holds. Places are those in ``records``.
+    """
     octets = np.frombuffer(records, np.uint8)
     rows = np.empty((len(records) // _HEAD, WIDTH), np.int64)
-    count = _fill(octets, rows)
-    return rows[:count] if count >= 0 else None
+    counts = np.empty(len(bounds) - 1, np.int64)
+    return rows[: _fill_all(octets, bounds, rows, counts)], counts
 
 
 def last_doubles(records: bytes, rows: Ints, last: int, columns: Sequence[int]) -> Floats:

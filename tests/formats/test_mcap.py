@@ -10,7 +10,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import NonSeekingReader, SeekingReader
 
-from app.compressed import Unpacker
 from app.formats import mcap
 
 
@@ -24,7 +23,7 @@ def a_file(chunks: int = 5, per_chunk: int = 4, close: bool = True) -> tuple[byt
         writer.add(channels[i % 2], i, 1000 + i, -i, said[-1])
         if i % per_chunk == per_chunk - 1:
             chunk = writer.chunk()
-            ends.append(len(data) + mcap._unpacked(chunk, 0, Unpacker())[1])
+            ends.append(len(data) + mcap._chunk_at(chunk, 0).end)
             data += chunk
     return data + (writer.end() if close else b""), said, ends
 
