@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.studies import attitude, gains, gait, integrators, pendulum, walks
+from app.studies import attitude, gains, gait, heading, integrators, pendulum, stairs, walks
 from app.studies.monte_carlo import WalkConfig
 from app.studies.words import Experiment
 
@@ -14,4 +14,6 @@ STUDIES: dict[str, Experiment] = {
     "walk-bias": Experiment(walks.BiasConfig(), walks.bias_tasks, walks.bias_study),
     "gains": Experiment(gains.Config(), gains.tasks, gains.conclude),
     "gait": Experiment(gait.Config(), gait.tasks, gait.conclude),
+    "heading": Experiment(heading.Config(), heading.tasks, heading.conclude),
+    "stairs": Experiment(stairs.Config(), stairs.tasks, stairs.conclude),
 }
