@@ -8,8 +8,10 @@ import os
 import socket
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass, field, fields
 from typing import Any
+from urllib.parse import quote
 
 import msgspec
 import pytest
@@ -63,7 +65,11 @@ class House:
         connection.close()
         return answer.status, {name.lower(): value for name, value in answer.getheaders()}, body
 
-    def knock(self, **headers: str) -> socket.socket:
+    def cookie(self, token: str) -> str:
+        """The cookie header of a browser that opened the address with this token."""
+        return self.get(f"/?token={quote(token)}")[1]["set-cookie"].split(";")[0]
+
+    def knock(self, path: str = "/", **headers: str) -> socket.socket:
         """A bare socket that has asked to become a websocket; it holds little. Headers may be replaced."""
         sent = {
             "Host": f"127.0.0.1:{self.port}", "Origin": self.origin, "Upgrade": "websocket",
@@ -72,7 +78,7 @@ class House:
         }  # fmt: skip
         sent |= {name.replace("_", "-"): value for name, value in headers.items()}
         lines = "".join(f"{name}: {value}\r\n" for name, value in sent.items() if value)
-        return self.say(f"GET / HTTP/1.1\r\n{lines}\r\n".encode())
+        return self.say(f"GET {path} HTTP/1.1\r\n{lines}\r\n".encode())
 
     def say(self, data: bytes) -> socket.socket:
         """A bare socket that has sent ``data``."""
@@ -98,29 +104,32 @@ def wait() -> Callable[[Callable[[], bool]], None]:
     return eventually
 
 
-@pytest.fixture
-def open_house() -> Iterator[Callable[..., House]]:
-    """Opens houses that close after the test; arguments are those of the door and of its access."""
-    houses: list[House] = []
-
-    def build(**more: object) -> House:
-        server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
-        slider = server.gui.add_slider("gain", 0.0, 2.0, 0.01, 1.0)
-        name = server.gui.add_text("name", "")
-        rules = {slider._impl.uuid: GuiRule("number", 0.0, 2.0), name._impl.uuid: GuiRule("text")}
-        access = Access(**{"port": 0} | {name: more.pop(name) for name in ACCESS & set(more)})  # type: ignore[arg-type]
-        options: dict[str, object] = {"health": lambda: {"samples": 7}, **more}
-        door = Door(access, viser_port=server.get_port(), rules=lambda: rules, **options)  # type: ignore[arg-type]
-        houses.append(House(server, door, slider, name, rules))
-        door.start()
-        return houses[-1]
-
-    yield build
-    for house in houses:
-        house.door.stop()
-        house.viser.stop()
+@contextmanager
+def opened(**more: object) -> Iterator[House]:
+    """A house until the block ends; arguments are those of the door and of its access."""
+    server = viser.ViserServer(host="127.0.0.1", port=0, verbose=False)
+    slider = server.gui.add_slider("gain", 0.0, 2.0, 0.01, 1.0)
+    name = server.gui.add_text("name", "")
+    rules = {slider._impl.uuid: GuiRule("number", 0.0, 2.0), name._impl.uuid: GuiRule("text")}
+    access = Access(**{"port": 0} | {name: more.pop(name) for name in ACCESS & set(more)})  # type: ignore[arg-type]
+    options: dict[str, object] = {"health": lambda: {"samples": 7}, **more}
+    door = Door(access, viser_port=server.get_port(), rules=lambda: rules, **options)  # type: ignore[arg-type]
+    house = House(server, door, slider, name, rules)
+    door.start()
+    try:
+        yield house
+    finally:
+        door.stop()
+        server.stop()
         for connection in house.sockets:
             connection.close()
+
+
+@pytest.fixture
+def open_house() -> Iterator[Callable[..., House]]:
+    """Opens houses that close after the test."""
+    with ExitStack() as closing:
+        yield lambda **more: closing.enter_context(opened(**more))
 
 
 @pytest.fixture
