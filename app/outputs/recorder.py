@@ -1,7 +1,8 @@
-"""Edge: a walk onto the disk, in a thread of its own: a chunk is closed and synced every fifth of a second.
+"""Edge: a walk onto the disk, in threads of its own: a chunk is closed every fifth of a second, and synced.
 
-Whoever hands something over never waits. What is synced survives a kill or a power cut. When the disk is
-full the recording is closed, readable, with the room kept for that; a slow disk is waited for in memory.
+Whoever hands something over never waits. What is written survives a kill, what is synced a power cut. When
+the disk is full the recording is closed, readable, with the room kept for that; one that does not even take
+what is written is waited for in memory.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from app import __version__
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
 from app.motion import InputError, Order, Quaternion, RecorderState, Sample, SourceInfo, Stride, Vector
+from app.outputs.syncing import Syncer
 
 log = logging.getLogger(__name__)
 
@@ -70,6 +72,7 @@ class Recorder:
             self._reserve.flush()
             self.path, self._file = _new_file(folder, _file_name(profile, source))
             self._size = self._write(self._keeper.begin(time.monotonic_ns()), 0)
+            self._syncer = Syncer(self._file.fileno(), sync)
         except OSError as error:
             raise InputError(f"--record {folder}: cannot be written: {error.strerror}") from None
         self._thread = threading.Thread(target=self._run, name="recorder", daemon=True)
@@ -144,6 +147,7 @@ class Recorder:
                 self._free = shutil.disk_usage(self.path.parent).free
                 self._keep(self._keeper.chunk)
             self._keep(self._keeper.end)
+            self._syncer.finish()
         except OSError as error:
             self._close_full(error)
         except Exception:
@@ -153,6 +157,7 @@ class Recorder:
             self._ended_s = time.monotonic()
             self._over.set()
             self._queue.clear()
+            self._syncer.stop()
             for file in (self._file, self._reserve):
                 with contextlib.suppress(OSError):
                     file.close()
@@ -170,23 +175,25 @@ class Recorder:
             self._keeper.event(time.monotonic_ns(), "lost", samples=self._lost)
             self._lost = 0
             self._trouble = "the disk is too slow: samples were not recorded"
+        self._syncer.check()
         self._pending = finish()
         began = time.monotonic()
         if self._pending:
             self._size = self._write(self._pending, self._size)
-        took = time.monotonic() - began
+            written, self._pending = self._pending, b""
+            self._syncer.wrote(written)
+        took = max(time.monotonic() - began, self._syncer.slow_s)
         if took > SLOW_S:
             self._trouble = f"the disk is slow: a write took {took:.1f} s"
         elif self._trouble.startswith("the disk is slow"):
             self._trouble = ""
 
     def _write(self, data: bytes, size: int) -> int:
-        """All of it on the disk, or none: the file's new size."""
+        """All of it in the file, or none: the file's new size."""
         try:
             rest = memoryview(data)
             while rest:
                 rest = rest[self._file.write(rest) :]
-            self._sync(self._file.fileno())
         except OSError:
             self._file.truncate(size)
             self._file.seek(size)
@@ -199,11 +206,16 @@ class Recorder:
         log.error("%s: %s", self.path, self._trouble)
         try:
             self._reserve.close()
-            if self._pending:
-                self._size = self._write(self._pending, self._size)
+            unsynced = self._syncer.stop()
+            self._size -= sum(map(len, unsynced))
+            self._file.truncate(self._size)
+            self._file.seek(self._size)
+            for data in (*unsynced, self._pending):
+                self._size = self._write(data, self._size)
             if not self._over.is_set():
                 self._keeper.event(time.monotonic_ns(), "stopped", why=error.strerror)
                 self._size = self._write(self._keeper.end(), self._size)
+            self._sync(self._file.fileno())
         except OSError as second:
             log.error("%s: closed without its summary: %s", self.path, second)
 

@@ -9,6 +9,7 @@ import subprocess
 import sys
 import textwrap
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
@@ -81,7 +82,7 @@ def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path) -> None:
 
 def test_a_slow_disk_is_told_and_loses_nothing(tmp_path: Path) -> None:
     def slow(number: int) -> None:
-        time.sleep(1.2)
+        time.sleep(2.0)
         os.fsync(number)
 
     samples = random_samples(400)
@@ -89,8 +90,41 @@ def test_a_slow_disk_is_told_and_loses_nothing(tmp_path: Path) -> None:
     for sample in samples:
         recorder.sample(sample)
     wait_for(lambda: "slow" in recorder.state.trouble)
+    recorder.sample(samples[0])
+    wait_for(lambda: kept.samples(found_in(recorder.path)) == [*samples, samples[0]])  # nothing waits for it
     recorder.close(30.0)
-    assert kept.samples(found_in(recorder.path)) == samples
+    assert kept.samples(found_in(recorder.path)) == [*samples, samples[0]]
+
+
+@pytest.fixture
+def tiny_disk(tmp_path: Path) -> Iterator[Path]:
+    """Five megabytes in memory, of which the recorder keeps four."""
+    folder = tmp_path / "disk"
+    folder.mkdir()
+    made = subprocess.run(
+        ["mount", "-t", "tmpfs", "-o", "size=5m", "tmpfs", folder], capture_output=True, check=False
+    )
+    if made.returncode:
+        pytest.skip("needs the right to mount a tiny disk")
+    yield folder
+    subprocess.run(["umount", "-l", folder], check=True)
+
+
+def test_a_disk_that_fills_up_costs_no_sample_before_it_is_full(tiny_disk: Path) -> None:
+    samples = random_samples(40_000)
+    recorder = a_recorder(tiny_disk)
+    for i, sample in enumerate(samples):
+        recorder.sample(sample)
+        if i % 200 == 199 and recorder.on:
+            time.sleep(0.02)
+    wait_for(lambda: not recorder.on)
+    recorder.close(20.0)
+    found = found_in(recorder.path)
+    back = kept.samples(found)
+    assert "No space left" in recorder.state.trouble
+    assert found.closed
+    assert len(back) > 1000
+    assert back == samples[: len(back)]
 
 
 def test_a_queue_that_is_full_is_told_and_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
