@@ -35,6 +35,11 @@ ENERGY_BINS, LEAST_BINS = 30, 24
 #: Walking is a mean |ω|² above this, (rad/s)²; without a stance for a second then, the threshold loosens.
 WALKING = 1.0
 STARVED_S, DOUBLING_S, NEAR_LEAST = 1.0, 0.25, 1.5
+#: A statistic so far over the threshold may still be a stance, if the foot has no speed to speak of.
+NEARLY_OVER = 3.0
+SHORTEST_NS = 250_000_000
+#: What a detector answers.
+MOVES, STANDS, NEARLY, STARVED = 0, 1, 2, 3
 
 _ADAPTIVE, _SHOE, _ARED = int(Detector.ADAPTIVE), int(Detector.SHOE), int(Detector.ARED)
 
@@ -47,6 +52,7 @@ def forget_gait(state: KalmanState) -> None:
     for b in range(BINS):
         state.bins[b, 0], state.bins[b, 1], state.bins[b, 2] = 0.0, 0.0, math.inf
     state.quiet_ns = state.elapsed_ns
+    state.sure_ns = state.elapsed_ns
 
 
 @kernel
@@ -110,26 +116,29 @@ def remember_gait(state: KalmanState) -> tuple[float, float]:
 
 
 @kernel
-def stands(state: KalmanState, energy: float, least: float, rate2: float, dt_s: float) -> bool:
-    """Whether the foot has zero velocity now, by the detector chosen; notes the threshold it was held to."""
+def stands(state: KalmanState, energy: float, least: float, rate2: float, dt_s: float) -> int:
+    """Whether the foot has zero velocity now, by the detector chosen; notes the threshold it was held to.
+
+    Returns ``MOVES``, ``STANDS``, or what the filter's own velocity has to confirm: ``NEARLY``, ``STARVED``.
+    """
     kind = int(state.detector)
     if kind == _ADAPTIVE:
         return adapts(state, energy, least)
     if kind == _SHOE:
         state.threshold = state.still_statistic
-        return state.statistic < state.threshold
+        return STANDS if state.statistic < state.threshold else MOVES
     if kind == _ARED:
         state.threshold = state.threshold_radps * state.threshold_radps / VARIANCE
-        return rate2 / VARIANCE < state.threshold
+        return STANDS if rate2 / VARIANCE < state.threshold else MOVES
     state.threshold = state.threshold_radps * state.threshold_radps / VARIANCE
     rate = math.sqrt(state.w0 * state.w0 + state.w1 * state.w1 + state.w2 * state.w2)
     phase, limit, least_s = state.phase, state.threshold_radps, state.min_duration_s
     phase, state.contrary_s = gait_phase(phase, state.contrary_s, rate, limit, least_s, dt_s)
-    return phase == STANCE
+    return STANDS if phase == STANCE else MOVES
 
 
 @kernel
-def adapts(state: KalmanState, energy: float, least: float) -> bool:
+def adapts(state: KalmanState, energy: float, least: float) -> int:
     """The largest safe statistic of a stance grows with the energy of the gait: walking and running alike.
 
     A fixed threshold serves one of them. The second condition keeps to the quietest part of a stance;
@@ -138,10 +147,14 @@ def adapts(state: KalmanState, energy: float, least: float) -> bool:
     threshold = min(max(state.gait_factor * energy, LEAST_THRESHOLD), MOST_THRESHOLD)
     state.threshold = min(threshold, OVER_LEAST * max(least, LEAST_FLOOR))
     if state.statistic < state.threshold:
-        return True
+        state.sure_ns = state.elapsed_ns
+        return STANDS
+    if energy <= WALKING:
+        return MOVES
     hungry_s = (state.elapsed_ns - state.quiet_ns) * 1e-9 - STARVED_S
-    if hungry_s <= 0.0 or energy <= WALKING:
-        return False
+    if hungry_s <= 0.0:
+        missed = state.statistic > state.statistic_before and state.elapsed_ns - state.sure_ns > SHORTEST_NS
+        return NEARLY if missed and state.statistic < NEARLY_OVER * threshold else MOVES
     loosened = min(threshold * 2.0 ** min(hungry_s / DOUBLING_S, 10.0), MOST_THRESHOLD)
     state.threshold = min(loosened, NEAR_LEAST * least)
-    return state.statistic < state.threshold
+    return STARVED if state.statistic < state.threshold else MOVES

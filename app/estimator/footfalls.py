@@ -18,10 +18,10 @@ SHORTEST_STANCE_NS, SHORTEST_SWING_NS = 15_000_000, 150_000_000
 
 
 @kernel
-def note_contact(state: KalmanState) -> None:
-    """Before an update: the first zero velocity of a swing under way is its contact."""
+def note_contact(state: KalmanState) -> bool:
+    """Before an update: the first zero velocity of a swing under way is its contact. Says whether it is."""
     if state.moving == 0.0 or state.contact_row >= 0.0:
-        return
+        return False
     state.contact_row, state.contact_ns = state.row, state.elapsed_ns
     state.before_x, state.before_y, state.before_z = state.corrected_x, state.corrected_y, state.corrected_z
     state.at_x = state.px - state.corrected_x
@@ -29,6 +29,7 @@ def note_contact(state: KalmanState) -> None:
     state.at_z = state.pz - state.corrected_z
     state.unturned_x, state.unturned_y, state.unturned_z = state.turned_x, state.turned_y, state.turned_z
     state.slowed_x, state.slowed_y, state.slowed_z = 0.0, 0.0, 0.0
+    return True
 
 
 @kernel

@@ -13,7 +13,16 @@ from app.estimator import state as s
 from app.estimator.attitude import fqa_tilt, fqa_yaw
 from app.estimator.clipping import mind_clipping
 from app.estimator.covariance import add_variance, measure, propagate
-from app.estimator.detectors import forget_gait, remember, remember_gait, stands, window_statistic
+from app.estimator.detectors import (
+    MOVES,
+    NEARLY,
+    STANDS,
+    forget_gait,
+    remember,
+    remember_gait,
+    stands,
+    window_statistic,
+)
 from app.estimator.footfalls import end_footfalls, footfall, note_contact
 from app.estimator.gait import STANCE
 from app.estimator.kalman_state import (
@@ -36,6 +45,8 @@ from app.rotation import exponential, from_yaw, multiply, normalise, rotate, yaw
 
 #: Noise of the specific force and of the rate, as they are integrated: (m/s)/√s and rad/√s.
 FORCE_NOISE, RATE_NOISE = 0.05, 0.002
+#: What happens between two samples is not seen: σ of a velocity as a share of the force's jump times Δt.
+JUMP_NOISE = 0.2
 #: How the biases wander: (m/s²)/√s and (rad/s)/√s.
 FORCE_WANDER, RATE_WANDER = 1e-4, 1e-6
 #: σ at the start: tilt and heading, rad, and the accelerometer's bias, m/s².
@@ -44,6 +55,12 @@ TILT_DOUBT, YAW_DOUBT, FORCE_DOUBT = 0.02, 1e-4, 0.05
 STANCE_NOISE, STATISTIC_NOISE = 0.01, 0.008
 #: A zero velocity holds in the middle of the window it was seen in, this long ago.
 SEEN_LATE_NS = 20_100_000
+#: Of a stance that is loud but may be one: the speed the foot may have by its own account, m/s.
+NEARLY_AT_REST = 0.5
+#: χ² of three parts up to which the best of the starved is believed, until it starved for too long, s.
+MOST_MISFIT, GIVEN_UP_S = 30.0, 3.0
+#: How much the newest swing says of how well swings and stances fit; one alone is not enough for "lost".
+UNFIT_SHARE, WORST_MISFIT = 0.25, 60.0
 #: After a gap the foot may be anywhere it could walk to, m/s.
 GAP_SPEED = 1.0
 
@@ -54,6 +71,7 @@ def step(state: KalmanState, reading: Reading) -> int:
     force_before, rate_before = (state.f0, state.f1, state.f2), (state.w0, state.w1, state.w2)
     happened, dt_s = receive(state, reading)
     place = remember(state)
+    state.statistic_before = state.statistic
     state.statistic, rate2 = window_statistic(state)
     energy, least = remember_gait(state)
     if state.told != 0.0:
@@ -68,9 +86,11 @@ def step(state: KalmanState, reading: Reading) -> int:
         mind_clipping(state, rate_before, dt_s)
         state.totals[0] = 0.0
         note_motion(state, place)
-        stood = stands(state, energy, least, rate2, dt_s)
+        answer = stands(state, energy, least, rate2, dt_s)
+        stood = answer != MOVES and is_confirmed(state, answer)
         if stood:
-            note_contact(state)
+            if note_contact(state):
+                doubt_swing(state)
             zero_velocity(state)
         happened |= footfall(state, stood)
         if state.standing != 0.0:
@@ -179,7 +199,9 @@ def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, d
     state.half0, state.half1, state.half2, state.half3 = q_half
     state.push_x, state.push_y, state.push_z = force_n
     propagate(state.P, q_half, force_n, dt_s)
-    add_variance(state.P, VELOCITY_AT, FORCE_NOISE**2 * dt_s)
+    jump2 = (state.f0 - force_before_b[0]) ** 2 + (state.f1 - force_before_b[1]) ** 2
+    jump2 += (state.f2 - force_before_b[2]) ** 2
+    add_variance(state.P, VELOCITY_AT, FORCE_NOISE**2 * dt_s + jump2 * (JUMP_NOISE * dt_s) ** 2)
     add_variance(state.P, ATTITUDE_AT, RATE_NOISE**2 * dt_s)
     add_variance(state.P, GYRO_AT, RATE_WANDER**2 * dt_s)
     add_variance(state.P, FORCE_AT, FORCE_WANDER**2 * dt_s)
@@ -213,18 +235,48 @@ def seen_at(state: KalmanState) -> int:
 
 
 @kernel
-def zero_velocity(state: KalmanState) -> None:
-    """The foot stood in the middle of the window: three scalar measurements of its velocity then."""
+def is_confirmed(state: KalmanState, answer: int) -> bool:
+    """How far the foot is from standing by its own account, into ``aways``; whether that fits the answer."""
     i = seen_at(state)
-    variance = STANCE_NOISE**2 + STATISTIC_NOISE**2 * state.statistic
-    for k in range(15):
-        state.shift[k] = 0.0
+    variance = stance_variance(state)
     velocity = (state.vx - state.gained_x, state.vy - state.gained_y, state.vz - state.gained_z)
+    speed2, state.misfit = 0.0, 0.0
     for k in range(3):
         roll = state.ring[i, RING_ROLL + k] if k < 2 else 0.0
-        away = roll - velocity[k] - state.ring[i, RING_GAIN + k]
+        state.aways[k] = roll - velocity[k] - state.ring[i, RING_GAIN + k]
+        away2 = state.aways[k] * state.aways[k]
+        speed2 += away2
+        state.misfit += away2 / (state.P[VELOCITY_AT + k, VELOCITY_AT + k] + variance)
+    if answer == NEARLY:
+        return speed2 < NEARLY_AT_REST**2
+    hungry_s = (state.elapsed_ns - state.quiet_ns) * 1e-9
+    return answer == STANDS or state.misfit < MOST_MISFIT or hungry_s > GIVEN_UP_S
+
+
+@kernel
+def doubt_swing(state: KalmanState) -> None:
+    """At a contact: how well the swing before fits the stance, over some swings; what P leaves out."""
+    state.unfit += UNFIT_SHARE * (min(state.misfit, WORST_MISFIT) - state.unfit)
+    if state.misfit > MOST_MISFIT:
+        away2 = state.aways[0] ** 2 + state.aways[1] ** 2
+        state.unknown_m2 += away2 * (0.5e-9 * (state.elapsed_ns - state.lift_ns)) ** 2
+
+
+@kernel
+def stance_variance(state: KalmanState) -> float:
+    """σ² of a zero velocity: a poor stance says little."""
+    return STANCE_NOISE**2 + STATISTIC_NOISE**2 * state.statistic
+
+
+@kernel
+def zero_velocity(state: KalmanState) -> None:
+    """The foot stood in the middle of the window: three scalar measurements of its velocity then."""
+    variance = stance_variance(state)
+    for k in range(15):
+        state.shift[k] = 0.0
+    for k in range(3):
         state.totals[k], state.lefts[k] = measure(
-            state.P, state.shift, state.gains[k], VELOCITY_AT + k, away, variance
+            state.P, state.shift, state.gains[k], VELOCITY_AT + k, state.aways[k], variance
         )
     take_shift(state)
 

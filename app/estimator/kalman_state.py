@@ -86,6 +86,7 @@ class KalmanState(Parameters, Window):
     phase: float
     contrary_s: float  # of the detector RATE
     statistic: float  # T
+    statistic_before: float  # of the sample before
     threshold: float  # what T had to stay below
     q0: float
     q1: float
@@ -108,6 +109,7 @@ class KalmanState(Parameters, Window):
     bin_at: float
     bin_ns: float  # where the newest bin begins
     quiet_ns: float  # the last zero velocity
+    sure_ns: float  # the last that needed no confirmation
     top_radps: float  # the largest rate read
     gained_x: float  # velocity gained from the specific force since the segment began
     gained_y: float
@@ -145,6 +147,9 @@ class KalmanState(Parameters, Window):
     start_x: float
     start_y: float
     start_z: float
+    misfit: float  # how far the last stance was from the velocity there, in the doubts about both: χ² of 3
+    unfit: float  # … at the contacts of the last swings, on average
+    unknown_m2: float  # σ² of the position beside P: what swings that did not fit may have gone wrong
     told: float  # 1: the gait around the sample is told (in hindsight), not remembered
     told_energy: float
     told_least: float
@@ -164,13 +169,16 @@ class KalmanState(Parameters, Window):
     bias_sum: Floats  # [3]: … and that times the bias
     ring: Floats  # [RING, RING_WIDTH]
     bins: Floats  # [BINS, 3]
-    fifth: Floats  # [3]: sums of the rate in the fifth under way
+    fifth: Floats  # [3]: sums of the rate in the fifth under way, and of its squares
+    fifth_rate2: Floats
     fifth_sum: Floats  # [3]: of the fifths' means, and of their squares
     fifth_squares: Floats
+    fifth_white: Floats  # [3]: of the variances that independent samples would give those means
     clip: Floats  # [3, 3]: for each gyro axis: clipped samples in a row, slope on the way in, their seconds
     gains: Floats  # [3, 15]: the column of P that each measurement of the last update saw,
     totals: Floats  # [3]: its variance and P's (0: there was none),
     lefts: Floats  # [3]: and how far it was away
+    aways: Floats  # [3]: how far each part of the velocity was away before any
     shift: Floats  # [15]: what an update found
 
 
@@ -185,10 +193,13 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "fifth": (3,),
     "fifth_sum": (3,),
     "fifth_squares": (3,),
+    "fifth_rate2": (3,),
+    "fifth_white": (3,),
     "clip": (3, 3),
     "gains": (3, PARTS),
     "totals": (3,),
     "lefts": (3,),
+    "aways": (3,),
     "shift": (PARTS,),
 }
 KALMAN = np.dtype([(name, np.float64, SHAPES.get(name, ())) for name in dtype_of(KalmanState).names or ()])

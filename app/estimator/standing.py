@@ -38,6 +38,7 @@ def begin_window(state: KalmanState) -> None:
     state.fifth_n, state.fifths = 0.0, 0.0
     for k in range(3):
         state.fifth[k], state.fifth_sum[k], state.fifth_squares[k] = 0.0, 0.0, 0.0
+        state.fifth_rate2[k], state.fifth_white[k] = 0.0, 0.0
 
 
 @kernel
@@ -67,9 +68,10 @@ def add_to_window(state: KalmanState, field_b: Vector) -> float:
         state.window_m2 + field_b[2],
     )
     state.fifth_n += 1.0
-    state.fifth[0] += state.w0
-    state.fifth[1] += state.w1
-    state.fifth[2] += state.w2
+    rates = (state.w0, state.w1, state.w2)
+    for k in range(3):
+        state.fifth[k] += rates[k]
+        state.fifth_rate2[k] += rates[k] * rates[k]
     return (state.elapsed_ns - state.window_ns) * 1e-9
 
 
@@ -80,7 +82,8 @@ def end_fifth(state: KalmanState) -> None:
         mean = state.fifth[k] / state.fifth_n
         state.fifth_sum[k] += mean
         state.fifth_squares[k] += mean * mean
-        state.fifth[k] = 0.0
+        state.fifth_white[k] += max(state.fifth_rate2[k] / state.fifth_n - mean * mean, 0.0) / state.fifth_n
+        state.fifth[k], state.fifth_rate2[k] = 0.0, 0.0
     state.fifths += 1.0
     state.fifth_n = 0.0
     state.fifth_ns = state.elapsed_ns
@@ -117,14 +120,16 @@ def keep_standing(state: KalmanState, energy: float, field_b: Vector) -> None:
 @kernel
 def learn_bias(state: KalmanState) -> None:
     """A whole still window: its mean rate, with its doubt, beside what was known; then a new window."""
-    if state.fifth_n > 0.0:
+    if state.fifth_n > 0.0 and state.fifths < FIFTHS:
         end_fifth(state)
     whole = state.bias_from_rest != 0.0 and state.fifths >= FIFTHS
     for k in range(3):
         if whole:
             mean = state.fifth_sum[k] / state.fifths
             scatter = state.fifth_squares[k] / state.fifths - mean * mean
-            info = 1.0 / max(scatter, LEAST_DOUBT_RADPS**2)
+            white = state.fifth_white[k] / state.fifths  # independent noise averages out, swaying does not
+            variance = white / state.fifths + max(scatter - 2.0 * white, 0.0)
+            info = 1.0 / max(variance, LEAST_DOUBT_RADPS**2)
             state.bias_info[k] += info
             state.bias_sum[k] += info * mean
         state.gyro_bias[k] = state.bias_sum[k] / state.bias_info[k]

@@ -110,6 +110,26 @@ def test_gyro_bias_of_a_still_start_is_found_and_swaying_is_not_taken_for_it() -
     assert abs(estimate(swaying, KALMAN).state["gyro_bias"][0][1]) < 0.006
 
 
+def test_bias_of_a_noisy_still_start_is_about_the_mean_of_it() -> None:
+    t_s, sigma = np.arange(800) / 200, 0.0076
+    errors: list[np.ndarray] = []
+    for seed in range(20):
+        rate = sigma * np.random.default_rng(seed).standard_normal((800, 3))
+        state = estimate(samples_of(t_s, np.array([0.0, 0.0, -G]), rate + 0.005), KALMAN).state
+        errors.append(state["gyro_bias"][0] - 0.005)
+    assert np.sqrt(np.mean(np.square(errors))) < 1.5 * sigma / 800**0.5
+
+
+def test_a_loud_stance_is_found_where_the_foot_has_no_speed() -> None:
+    samples = foot("strides=20&rate_hz=200")
+    t_s = samples.matrix[:, 0] * 1e-9
+    shaken = samples.matrix.copy()
+    hum = np.where((t_s > 10.0) & (t_s < 11.0), 1.0, 0.0)  # over the threshold, its mean is nothing
+    shaken[:, 6] += 2.6 * hum * (-1.0) ** np.arange(len(t_s))
+    loud = Samples("foot", samples.role, 0, shaken, samples.saturation)
+    assert estimate(loud, KALMAN).stride_count == 20
+
+
 def test_a_clipped_gyro_is_doubted_about_its_own_axis_and_mended() -> None:
     t_s = np.arange(400) / 200
     swing = np.where((t_s > 1.0) & (t_s < 1.2), 12.0 * np.sin(np.pi * (t_s - 1.0) / 0.2), 0.0)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -49,6 +50,16 @@ def test_a_walk_is_good_and_a_foot_that_never_stands_is_lost() -> None:
     assert lost is not None
     assert lost.word == "lost"
     assert "no stance" in lost.why
+
+
+def test_samples_said_at_the_wrong_rate_are_not_good() -> None:
+    samples = foot("strides=20&rate_hz=200&noise=1")
+    hurried = samples.matrix.copy()
+    hurried[:, 0] /= 2.0
+    trust = estimate(replace(samples, matrix=hurried), KALMAN).trust
+    assert trust is not None
+    assert trust.word == "lost"
+    assert "rate" in trust.why
 
 
 def test_the_ellipse_holds_the_truth_of_the_vicon_room(shared_data: Path) -> None:
