@@ -358,9 +358,14 @@ class RestartHere:
     """Forget the walk so far and start again at the next sample."""
 
 
+@dataclass(frozen=True)
+class LookBack:
+    """The walk stands still or is over: if its settings ask for hindsight, smooth it as far as it goes."""
+
+
 SessionCommand = (
     SetCandidate | ReplaceCandidate | ApplyCandidate | DropCandidate | Undo
-    | SetApplyAtOnce | KeepAs | SwapAB | ResetHeading | RestartHere
+    | SetApplyAtOnce | KeepAs | SwapAB | ResetHeading | RestartHere | LookBack
 )  # fmt: skip
 
 
@@ -590,6 +595,7 @@ class TrackView(NamedTuple):
     name: str
     settings: Settings
     feet: tuple[FootView, ...]
+    smoothed_s: float | None = None  # estimated in hindsight up to this time; None: as it was live
 
 
 class Sweep(NamedTuple):

@@ -11,13 +11,15 @@ from pathlib import Path
 from app.formats.journal import Start
 from app.motion import InputError, Order, RecorderState, RestartHere, Sample
 from app.outputs.recorder import Recorder
-from app.settings import Settings
+from app.settings import BUILT_IN
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.source import Source
 
 #: A recording without a browser may take longer to end: nobody waits for the page.
 CLOSE_S = 30.0
+#: What a walk from the recording starts with.
+START = BUILT_IN["default"]
 
 
 def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str], None]) -> RecorderState:
@@ -25,9 +27,9 @@ def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str],
     source = open_source(spec, finish=True, changes=False)
     if isinstance(source, PhoneSource):
         raise InputError(f"{spec}: a phone comes by the page's port: walk --source {spec} --record {folder}")
-    recorder = Recorder(folder, "papers", spec, source.info, source.made_by)
+    recorder = Recorder(folder, "default", spec, source.info, source.made_by)
     tell(f"Recording to {recorder.path}  (Ctrl-C ends it)")
-    recorder.start(Start(Settings(), Settings(), False))
+    recorder.start(Start(START, START, False))
     try:
         asyncio.run(_fill(source, recorder, seconds))
     finally:
@@ -51,7 +53,7 @@ async def _take(source: Source, recorder: Recorder) -> None:
         taken += 1
         if isinstance(item, RestartHere):
             recorder.order(taken, Order(item, "replay", 0))
-            recorder.start(Start(Settings(), Settings(), False))
+            recorder.start(Start(START, START, False))
         elif isinstance(item, Sample):
             recorder.sample(item)
             while source.replay and recorder.waiting > 10_000:  # as fast as possible is as fast as the disk

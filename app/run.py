@@ -49,6 +49,8 @@ log = logging.getLogger(__name__)
 FRAME_S = 1 / 60
 #: A sample that comes this long before or after a frame is due is drawn at once.
 EARLY_S = 0.006
+#: Between looks whether the walk halts.
+HALT_S = 0.2
 #: Between looks at the folder of profiles.
 PROFILES_S = 2.0
 #: Where a foot is drawn is recorded this often.
@@ -69,7 +71,7 @@ class Options:
     open_browser: bool
     budget_bytes: int = DEFAULT_BUDGET
     told: bool = False  # the settings were given: a recording's own changes are not repeated
-    profile: str = "papers"
+    profile: str = "default"
     record: Path | None = None  # record from the beginning
     recordings: Path = Path("recordings")  # for the button
 
@@ -155,6 +157,7 @@ class Viewer:
             asyncio.create_task(self._reestimate(), name="re-estimate"),
             asyncio.create_task(self._watch_profiles(), name="profiles"),
             asyncio.create_task(self._librarian.look(), name="library"),
+            asyncio.create_task(self._look_back(), name="look back"),
         ]
         stop = asyncio.create_task(self._stop.wait(), name="stop")
         done, _ = await asyncio.wait([stop, *tasks], return_when=asyncio.FIRST_COMPLETED)
@@ -340,6 +343,16 @@ class Viewer:
                 self._fresh.set()
                 if self._session.wanted is not None:
                     self._work.set()
+
+    async def _look_back(self) -> None:
+        """Once at each halt (a pause, the end) have the walk smoothed, if its settings ask for hindsight."""
+        seen = -1
+        while True:
+            await asyncio.sleep(HALT_S)
+            halted = self._source.link in (m.Link.PAUSED, m.Link.ENDED)
+            if halted and self._session.main.settings.hindsight and self._session.number != seen:
+                self._take_order(m.Order(m.LookBack(), "hindsight", time.monotonic_ns()))
+                seen = self._session.number
 
     def _find_gains(self, order: m.Order) -> None:
         if self._sweeping is not None and not self._sweeping.done():

@@ -27,6 +27,7 @@ CHANGES = 200
 #: A slider moved again by the same person within this time is the same drag.
 DRAG_NS = 2_000_000_000
 SLIDER = "moved"
+LOOKED_BACK = "smoothed in hindsight"
 DEFAULT_BUDGET = 512 * 2**20
 
 
@@ -158,13 +159,16 @@ class Session:
                 self._reset_heading(order)
             case m.RestartHere():
                 self._restart(order)
+            case m.LookBack():
+                self._look_back(order)
             case _:
                 raise m.InputError(f"{type(command).__name__} is not for the session")
 
     @property
     def candidate_settings(self) -> Settings:
         """What the sliders show: the wanted, else the candidate's, else the main track's settings."""
-        return (self._next or self.wanted or self.candidate or self.main).settings
+        wanted = None if self.wanted is not None and self.wanted.look_back else self.wanted
+        return (self._next or wanted or self.candidate or self.main).settings
 
     @property
     def _coming(self) -> Reestimation | None:
@@ -229,8 +233,9 @@ class Session:
 
     def _pass_over(self) -> None:
         """An apply that the next one overtakes has happened all the same: an undo goes back to it."""
-        if self._coming is not None and self._coming.reason != "undo":
-            self._undo.append(self._coming.before)
+        coming = self._coming
+        if coming is not None and coming.reason != "undo" and not coming.look_back:
+            self._undo.append(coming.before)
 
     def _fresh(self, job: Reestimation) -> Reestimation:
         """The same job, for the samples that are here now."""
@@ -251,7 +256,7 @@ class Session:
 
     def _undo_last(self, order: m.Order) -> None:
         coming = self._coming
-        if coming is not None and coming.reason != "undo":
+        if coming is not None and coming.reason != "undo" and not coming.look_back:
             self.wanted = replace(
                 coming, reason="undo"
             )  # given up: nothing to go back to but what was before
@@ -260,10 +265,10 @@ class Session:
             self._want(order, self._undo.pop(), True, "undo")
 
     def _make_main(self, track: Track, why: Reestimation) -> None:
-        if not self._same_drag(why) and why.reason != "undo":
+        if not self._same_drag(why) and why.reason != "undo" and not why.look_back:
             self._undo.append(why.before)
         reason = "slider" if why.reason.startswith(SLIDER) else why.reason
-        what = f"{reason}: {why.before.differences(track.settings)}"
+        what = f"{reason}: {why.before.differences(track.settings)}".removesuffix(": ")
         self._note(m.Change(why.taken, why.host_ns, why.who, what))
         turn_rad = track.settings.start_heading_rad - self.main.settings.start_heading_rad
         for sensor, frozen in self._frozen.items():
@@ -272,7 +277,7 @@ class Session:
             track.feet[sensor].builder.seed(frozen.finished())
         if self._slot_now in self._slots and self._slots[self._slot_now] != track.settings:
             self._slot_now = None
-        self.main, self.candidate = track, None
+        self.main, self.candidate = track, self.candidate if why.look_back else None
 
     def _same_drag(self, why: Reestimation) -> bool:
         """Whether this goes on with the slider that the last apply moved: one drag is one step to undo."""
@@ -287,6 +292,15 @@ class Session:
     def _note(self, change: m.Change) -> None:
         self.changes.append(change)
         del self.changes[:-CHANGES]
+
+    def _look_back(self, order: m.Order) -> None:
+        """Smooth the main track, unless it is about to change anyway or has been smoothed up to now."""
+        settings, now_s = self.main.settings, max((s.elapsed_s for s in self.stores.values()), default=0.0)
+        done = self.main.smoothed_s is not None and self.main.smoothed_s >= now_s
+        if settings.hindsight and settings.estimator == "kalman" and self._coming is None and not done:
+            self._next = self._next or self.wanted
+            job = self._job(order, settings, True, LOOKED_BACK)
+            self.wanted = self._fresh(replace(job, look_back=True))
 
     def _reset_heading(self, order: m.Order) -> None:
         if (

@@ -24,6 +24,7 @@ class Limit:
     safe: tuple[float, float] = (0.0, 1.0)
     step: float = 0.01
     choices: tuple[str, ...] = ()
+    only: str = ""  # the estimator that reads it; empty: every one
 
 
 def _setting(default: Value, limit: Limit) -> Any:
@@ -71,6 +72,7 @@ class Settings:
             "How fast gravity (and the magnetometer) pull the orientation straight while the foot"
             " stands; 0 trusts the gyro alone.",
             0.0, 50.0, (0.0, 3.0), 0.01,
+            only="papers",
         ),
     )  # fmt: skip
     gain_swing: float = _setting(
@@ -80,6 +82,7 @@ class Settings:
             "The same pull while the foot swings; acceleration then disturbs gravity, so 0 is best"
             " on real walks.",
             0.0, 50.0, (0.0, 3.0), 0.01,
+            only="papers",
         ),
     )  # fmt: skip
     threshold_radps: float = _setting(
@@ -156,6 +159,7 @@ class Settings:
             "How the Kalman filter knows that the foot stands: by a threshold that follows the gait, or by"
             " a fixed one on the statistic (shoe), its rate (ared), or the papers' machine (rate).",
             choices=("adaptive", "shoe", "ared", "rate"),
+            only="kalman",
         ),
     )  # fmt: skip
     gait_factor: float = _setting(
@@ -165,6 +169,7 @@ class Settings:
             "Detector adaptive: how loud a stance may be beside the gait around it; too low misses stances"
             " of a runner, too high takes slow swings for stances.",
             1.0, 1000.0, (10.0, 100.0), 1.0,
+            only="kalman",
         ),
     )  # fmt: skip
     still_statistic: float = _setting(
@@ -174,6 +179,7 @@ class Settings:
             "Detector shoe: the statistic that a standing foot stays below; 100 suits walking, runners need"
             " ten times that.",
             1.0, 1e5, (10.0, 2000.0), 10.0,
+            only="kalman",
         ),
     )  # fmt: skip
     sensor_height_m: float = _setting(
@@ -183,6 +189,7 @@ class Settings:
             "How high the sensor sits above the sole: a standing foot rolls, which moves it by h times the"
             " turn; 0 shortens the walk by about 2 %.",
             0.0, 0.3, (0.0, 0.15), 0.005,
+            only="kalman",
         ),
     )  # fmt: skip
     gyro_range_radps: float = _setting(
@@ -191,6 +198,7 @@ class Settings:
             "Gyro range", "", "rad/s",
             "The angular rate at which the gyro clips; 0: 8.7 rad/s (500 °/s) until faster rates were read.",
             0.0, 100.0, (0.0, 40.0), 0.1,
+            only="kalman",
         ),
     )  # fmt: skip
 
@@ -200,6 +208,7 @@ class Settings:
             "In hindsight", "", "",
             "Kalman filter: estimate each step by what came after it too, once the walk is over; a live"
             " walk runs as without.",
+            only="kalman",
         ),
     )  # fmt: skip
 
@@ -231,6 +240,21 @@ BUILT_IN: dict[str, Settings] = {
     "default": Settings(estimator="kalman"),
     "hindsight": Settings(estimator="kalman", hindsight=True),
 }
+
+
+def is_read(name: str, settings: Settings) -> bool:
+    """Whether a setting has any effect beside the others: a slider that has none need not be shown."""
+    if LIMITS[name].only not in ("", settings.estimator):
+        return False
+    if settings.estimator == "papers":
+        return True
+    detectors = {
+        "gait_factor": ("adaptive",),
+        "still_statistic": ("shoe",),
+        "threshold_radps": ("ared", "rate"),
+        "min_duration_s": ("rate",),
+    }
+    return settings.detector in detectors.get(name, (settings.detector,))
 
 
 def parse(name: str, text: str) -> Value:

@@ -13,6 +13,7 @@ import numpy as np
 
 from app.blocks import BLOCK, Blocks
 from app.clocks import Clock, KnownClock
+from app.estimator.smoother import finish
 from app.estimator.tracker import Checkpoint, Tracker
 from app.motion import (
     POSITION,
@@ -236,6 +237,7 @@ class Track:
         self.name = name
         self.settings = settings
         self.feet: dict[str, FootTrack] = {}
+        self.smoothed_s: float | None = None  # since the first sample; None: nothing is smoothed
 
     def advance(self, sensor: str, store: Blocks, base: Checkpoint | None = None) -> None:
         """Take a sensor's new samples; a sensor not seen before joins, from ``base`` if blocks are gone."""
@@ -243,6 +245,13 @@ class Track:
         if foot is None:
             foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, base)
         foot.advance(store)
+
+    def look_back(self, stores: Mapping[str, Blocks]) -> None:
+        """Every sensor's walk in hindsight, where the settings ask for it."""
+        for sensor, foot in self.feet.items():
+            if finish(foot.tracker, stores[sensor]):
+                block, place = stores[sensor].block(foot.tracker.rows.end - 1)
+                self.smoothed_s = max(self.smoothed_s or 0.0, float(block[place, 0]) * 1e-9)
 
     def drop_before(self, sensor: str, row: int) -> None:
         """Let a sensor's rows before ``row`` go, as its samples have gone."""
@@ -258,7 +267,7 @@ class Track:
     def view(self, stores: Mapping[str, SensorStore], true: Mapping[str, TruePlace]) -> TrackView:
         """The whole track now."""
         feet = (foot.view(stores[sensor], true.get(sensor)) for sensor, foot in self.feet.items())
-        return TrackView(self.name, self.settings, tuple(feet))
+        return TrackView(self.name, self.settings, tuple(feet), self.smoothed_s)
 
     @property
     def nbytes(self) -> int:
@@ -281,10 +290,13 @@ class Reestimation:
     taken: int  # samples and orders taken when it was asked for
     before: Settings  # what an undo goes back to
     epoch: int = 0  # of the session when it was given out
+    look_back: bool = False  # smooth it when it is there
 
     def run(self) -> Track:
         """The new track over all samples that were there when the work was given out."""
         track = Track(f"track{self.number}", self.settings)
         for sensor, store in self.stores.items():
             track.advance(sensor, store, self.bases.get(sensor))
+        if self.look_back:
+            track.look_back(self.stores)
         return track

@@ -28,7 +28,15 @@ def ghost() -> Section:
     """A real slider message through the door, and the last message of the ghost back through it."""
     port = free_port()
     with running(
-        "app", "walk", "--source", f"{TEN_MINUTES}&speed=0", "--no-open", "--port", str(port)
+        "app",
+        "walk",
+        "--profile",
+        "papers",
+        "--source",
+        f"{TEN_MINUTES}&speed=0",
+        "--no-open",
+        "--port",
+        str(port),
     ) as viewer:
         first_line(viewer)
         wait_for_samples(port, SAMPLES)

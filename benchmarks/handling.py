@@ -55,7 +55,9 @@ def batch_end() -> tuple[float, ...]:
 def handle(clock_s: float) -> Handled:
     """Do what can be done, at random but the same each time."""
     port, chance = free_port(), random.Random(2)
-    with running("app", "walk", "--source", f"{WALK}&speed=8", "--no-open", "--port", str(port)) as viewer:
+    with running(
+        "app", "walk", "--profile", "papers", "--source", f"{WALK}&speed=8", "--no-open", "--port", str(port)
+    ) as viewer:
         first_line(viewer)
         wait_for_samples(port, 2000)
         silent, client = deaf(port), Client(port)

@@ -18,7 +18,7 @@ from app.settings import Settings, parse
 
 log = logging.getLogger(__name__)
 
-DEFAULT_PROFILE = "papers"
+DEFAULT_PROFILE = "default"
 LONG_TOKEN = 12
 
 

@@ -157,10 +157,12 @@ def gait_around(tracker: Tracker, samples: Blocks) -> Floats:
     return np.column_stack([energy, minimum_filter1d(statistic, width)])
 
 
-def finish(tracker: Tracker, samples: Blocks) -> None:
-    """The walk is over: smooth it if its settings say so."""
-    if tracker.settings.hindsight and tracker.settings.estimator == "kalman":
-        smooth(tracker, samples)
+def finish(tracker: Tracker, samples: Blocks) -> bool:
+    """The walk is over: smooth it if its settings say so. Says whether they do."""
+    if not (tracker.settings.hindsight and tracker.settings.estimator == "kalman"):
+        return False
+    smooth(tracker, samples)
+    return True
 
 
 def smooth(tracker: Tracker, samples: Blocks) -> None:

@@ -33,6 +33,11 @@ class Input:
         self.id = private.control_id(handle)
         self._ours = handle.update_timestamp
 
+    def appear(self, visible: bool) -> None:
+        """Be on the page, or not."""
+        if self.handle.visible != visible:
+            self.handle.visible = visible
+
     def show(self, value: Any) -> None:
         """Make every browser show this; a control just touched is left until the hand is off it."""
         handle = self.handle

@@ -52,7 +52,22 @@ def feet(snapshot: Snapshot) -> str:
     """A card per foot."""
     cards = "".join(_card(foot) for foot in snapshot.main.feet)
     note = UNLINKED if len(snapshot.main.feet) > 1 else ""
-    return cards + note + legend(snapshot) if cards else '<div class="ss-note">No foot yet.</div>'
+    return (
+        cards + note + hindsight(snapshot) + legend(snapshot)
+        if cards
+        else '<div class="ss-note">No foot yet.</div>'
+    )
+
+
+def hindsight(snapshot: Snapshot) -> str:
+    """What a walk whose settings ask for hindsight shows: its live estimate, or the smoothed one."""
+    track = snapshot.main
+    if not track.settings.hindsight or track.settings.estimator != "kalman":
+        return ""
+    if track.smoothed_s is None:
+        return '<div class="ss-note">Hindsight: live until the walk is paused or over, then smoothed.</div>'
+    now = "" if snapshot.t_s <= track.smoothed_s else ", live since"
+    return f'<div class="ss-note">Hindsight: smoothed up to {words.clock(track.smoothed_s)}{now}.</div>'
 
 
 def legend(snapshot: Snapshot) -> str:

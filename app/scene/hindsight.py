@@ -43,6 +43,12 @@ class CandidateBox:
         self._at_once.show(snapshot.apply_at_once)
 
 
+NO_GAINS = (
+    '<div class="ss-note">This walk is estimated by the Kalman filter, which has no gains to find: choose the'
+    " estimator <b>papers</b> under <b>Tune</b>, apply it, and search then.</div>"
+)
+
+
 class GainSearch:
     """ "Find gains": the button, its progress, the surface."""
 
@@ -52,15 +58,17 @@ class GainSearch:
             " ends nearest to the start: walk a loop and stop where you began.</div>"
         )
         self.button = controls.button("Find gains", FindGains)
+        self._why_not = controls.html()
         self._progress = controls.gui.add_progress_bar(0.0, visible=False, animated=True)
         self._picture = controls.html()
         self._drawn: Sweep | None = None
 
-    def show(self, status: Status) -> None:
-        """As the sweep is."""
-        running = status.sweep_progress is not None
+    def show(self, snapshot: Snapshot, status: Status) -> None:
+        """As the sweep is; there is none where the estimator has no gains."""
+        running, none = status.sweep_progress is not None, snapshot.main.settings.estimator != "papers"
         self._progress.visible = running
-        self.button.handle.disabled = running
+        self.button.handle.disabled = running or none
+        self._why_not.show(NO_GAINS if none else "")
         if status.sweep_progress is not None:
             private.set_progress(self._progress, status.sweep_progress)
         if status.sweep is not self._drawn:

@@ -129,7 +129,7 @@ class Panel:
         self._recording.show(status)
         self._library.show(status)
         self._box.show(snapshot)
-        self._search.show(status)
+        self._search.show(snapshot, status)
         self._tuning.show(snapshot)
         self._profiles.show(status)
         for name, control in self._switches.items():

@@ -8,13 +8,13 @@ from typing import Any
 
 from app.motion import GuiRule, ReplaceCandidate, SetCandidate, Snapshot
 from app.scene.controls import Controls, Input
-from app.settings import LIMITS, Limit, Settings, Value
+from app.settings import BUILT_IN, LIMITS, Limit, Value, is_read
 
 FIRST = (
-    "gain_stance", "gain_swing", "threshold_radps", "min_duration_s", "magnetometer", "gravity_from_rest",
-    "gravity_mps2",
+    "estimator", "gain_stance", "gain_swing", "threshold_radps", "min_duration_s", "gait_factor",
+    "sensor_height_m", "magnetometer", "gravity_from_rest", "gravity_mps2",
 )  # fmt: skip
-DEFAULTS = Settings()
+DEFAULTS = BUILT_IN["default"]
 
 
 def title(limit: Limit) -> str:
@@ -40,7 +40,7 @@ class Tuning:
     def __init__(self, controls: Controls) -> None:
         self._controls = controls
         self._inputs: dict[str, Input] = {}
-        self.resets: list[Input] = []
+        self._resets: dict[str, Input] = {}
         for name in FIRST:
             self._add(name)
 
@@ -58,10 +58,18 @@ class Tuning:
         """The control of each setting."""
         return dict(self._inputs)
 
+    @property
+    def resets(self) -> list[Input]:
+        """The reset buttons."""
+        return list(self._resets.values())
+
     def show(self, snapshot: Snapshot) -> None:
-        """Every control as the session's candidate settings say."""
+        """Every control as the session's candidate settings say; those without effect stay away."""
+        settings = snapshot.candidate_settings
         for name, control in self._inputs.items():
-            value = getattr(snapshot.candidate_settings, name)
+            for part in (control, self._resets[name]):
+                part.appear(is_read(name, settings))
+            value = getattr(settings, name)
             if isinstance(value, float):
                 value = shown(value, LIMITS[name])
                 self._controls.widen(control, value, value)
@@ -77,7 +85,7 @@ class Tuning:
             )
         else:
             self._inputs[name] = self._slider(name, default, limit)
-        self.resets.append(self._controls.button("↺", _resetter(name, default)))
+        self._resets[name] = self._controls.button("↺", _resetter(name, default))
 
     def _slider(self, name: str, default: float, limit: Limit) -> Input:
         k = scale(limit)

@@ -31,7 +31,7 @@ from app.motion import (
 from app.scene import controls, private
 from app.scene.page import Scene
 from app.scene.replaying import factor
-from app.settings import LIMITS, Settings
+from app.settings import BUILT_IN, LIMITS, Settings
 from tests.scene import fakes
 from tests.scene.browsers import client, until
 
@@ -74,7 +74,7 @@ PRESSES = {
     "Keep as B": KeepAs("B"), "Swap": SwapAB(), "Reset heading": ResetHeading(),
     "Restart from here": RestartHere(),
     "Play": Pause(False), "Pause": Pause(True), "Step": Step(),
-    "Reset all sliders": ReplaceCandidate(Settings(), "all sliders reset"),
+    "Reset all sliders": ReplaceCandidate(BUILT_IN["default"], "all sliders reset"),
 }  # fmt: skip
 WRITES = [
     ("Apply at once", True, SetApplyAtOnce(True)), ("Loop", True, Loop(True)),
@@ -123,7 +123,18 @@ def test_each_setting_has_its_reset(scene: Scene, orders: list[Order]) -> None:
     with client(scene.port) as browser:
         browser.write(resets[0].id, True)
         until(lambda: orders)
-    assert orders[0].command == SetCandidate((("gain_stance", Settings().gain_stance),))
+    assert orders[0].command == SetCandidate((("estimator", BUILT_IN["default"].estimator),))
+
+
+def test_only_what_the_estimator_reads_is_on_the_page(scene: Scene) -> None:
+    for settings in (Settings(), BUILT_IN["default"], Settings(estimator="kalman", detector="rate")):
+        scene.panel._tuning.show(fakes.snapshot(5.0, candidate_settings=settings))
+        shown = {name for name, control in scene.panel.tuned().items() if control.handle.visible}
+        assert "estimator" in shown
+        assert ("gain_stance" in shown) == (settings.estimator == "papers")
+        assert ("sensor_height_m" in shown) == (settings.estimator == "kalman")
+        assert ("min_duration_s" in shown) == (settings.estimator == "papers" or settings.detector == "rate")
+        assert len(shown) == sum(reset.handle.visible for reset in scene.panel._tuning.resets)
 
 
 def test_profiles(scene: Scene, orders: list[Order]) -> None:
