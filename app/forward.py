@@ -8,8 +8,11 @@ import signal
 from collections.abc import Callable
 from contextlib import suppress
 
+from app.formats.wire.message import NAME
 from app.motion import InputError, RestartHere, Sample
-from app.outputs.forwarder import Sender, sender_to
+from app.outputs.forwarder import Links, Sender, sender_to
+from app.outputs.lsl import LslSender
+from app.sources.lsl import library
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.source import Source
@@ -20,21 +23,27 @@ _BREATH = 200
 _LAST_S = 0.5
 
 
-def forward(spec: str, to: str, token: str | None, limit_bytes: int, tell: Callable[[str], None]) -> str:
+def forward(spec: str, to: str, links: Links, tell: Callable[[str], None]) -> str:
     """Forward until the source ends or Ctrl-C; what became of the samples, in one line."""
     source = open_source(spec, finish=True, changes=False)
     if isinstance(source, PhoneSource):
         raise InputError(f"--source {spec}: a phone comes by the page's port, and needs no forwarder")
     try:
-        return asyncio.run(_forward(source, to, token, limit_bytes, tell))
+        return asyncio.run(_forward(source, to, links, tell))
     finally:
         source.close()
 
 
-async def _forward(
-    source: Source, to: str, token: str | None, limit_bytes: int, tell: Callable[[str], None]
-) -> str:
-    sender = sender_to(to, secrets.randbits(64), token, limit_bytes, tell)
+def _sender(source: Source, to: str, links: Links, tell: Callable[[str], None]) -> Sender:
+    if not to.startswith("lsl:"):
+        return sender_to(to, secrets.randbits(64), links, tell)
+    if not NAME.fullmatch(to[4:]):
+        raise InputError(f"--to {to}: expected lsl:NAME of 1 to 16 letters, digits, _ . -")
+    return LslSender(library(), to[4:], source.info.rate_hz)
+
+
+async def _forward(source: Source, to: str, links: Links, tell: Callable[[str], None]) -> str:
+    sender = _sender(source, to, links, tell)
     delivering = asyncio.create_task(sender.run(), name="deliver")
     reading = asyncio.create_task(_read(source, sender), name="read")
     loop = asyncio.get_running_loop()

@@ -9,7 +9,8 @@ import ssl
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from typing import Any, Protocol
+from pathlib import Path
+from typing import Any, NamedTuple, Protocol
 from urllib.parse import parse_qs, urlsplit
 
 from websockets.asyncio.client import ClientConnection, connect
@@ -32,6 +33,24 @@ _MOST_COMPLAINTS = 50
 _DATAGRAM_BYTES = 1400  # fits every network's packets whole
 
 Tell = Callable[[str], None]
+
+
+class Links(NamedTuple):
+    """What a websocket needs: the receiver's token and certificate, and how much may wait for it."""
+
+    token: str | None = None
+    trust: Path | None = None
+    limit_bytes: int = 64 * 2**20
+
+    def tls(self) -> ssl.SSLContext:
+        """Believes what the system believes, and the certificate that was given."""
+        context = ssl.create_default_context()
+        try:
+            if self.trust is not None:
+                context.load_verify_locations(self.trust)
+        except (OSError, ssl.SSLError) as error:
+            raise InputError(f"--trust {self.trust}: no certificate that can be read ({error})") from None
+        return context
 
 
 class Sender(Protocol):
@@ -57,7 +76,7 @@ class Sender(Protocol):
         """What became of the samples, in one line."""
 
 
-def sender_to(address: str, session: int, token: str | None, limit_bytes: int, tell: Tell) -> Sender:
+def sender_to(address: str, session: int, links: Links, tell: Tell) -> Sender:
     """The sender to ``ws://HOST:PORT``, ``wss://…`` or ``udp://HOST:PORT``; ``InputError`` for any other."""
     try:
         parts = urlsplit(address)
@@ -68,7 +87,7 @@ def sender_to(address: str, session: int, token: str | None, limit_bytes: int, t
         raise InputError(f"--to {address}: expected ws://HOST:PORT or udp://HOST:PORT")
     if parts.scheme == "udp":
         return UdpSender(parts.hostname, port, session, _repeats(address, parts.query))
-    return WsSender(address, session, token, limit_bytes, tell)
+    return WsSender(address, session, links, tell)
 
 
 def _repeats(address: str, query: str) -> int:
@@ -82,10 +101,11 @@ def _repeats(address: str, query: str) -> int:
 class WsSender:
     """By websocket: sent again until the receiver says that it has it."""
 
-    def __init__(self, address: str, session: int, token: str | None, limit_bytes: int, tell: Tell) -> None:
+    def __init__(self, address: str, session: int, links: Links, tell: Tell) -> None:
         self._address, self._tell = address, tell
-        self._headers = {"Authorization": f"Bearer {token}"} if token else {}
-        self._outbox = Outbox(session, limit_bytes)
+        self._headers = {"Authorization": f"Bearer {links.token}"} if links.token else {}
+        self._outbox = Outbox(session, links.limit_bytes)
+        self._tls = links.tls() if address.startswith("wss") else None
         self._news = asyncio.Event()
         self._idle = asyncio.Event()
         self._away = False
@@ -125,6 +145,7 @@ class WsSender:
                 async with connect(
                     self._address,
                     additional_headers=self._headers,
+                    ssl=self._tls,
                     compression=None,
                     open_timeout=OPEN_S,
                     ping_interval=PING_S,

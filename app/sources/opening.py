@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Callable
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from app.simulate.calibration import make_calibration
 from app.simulate.gestures import make_gestures
 from app.simulate.walk import make_walk
 from app.sources.files import load
+from app.sources.lsl import LslSource
 from app.sources.phone import PhoneSource
 from app.sources.replay import Replay
 from app.sources.serial_spec import open_serial
@@ -46,11 +48,14 @@ def open_source(
 
 def open_live(spec: Spec) -> Source:
     """The live source of each kind."""
-    if spec.kind == "serial":
-        return open_serial(spec)
-    if spec.kind == "ws":
-        return WsSource(spec)
-    return UdpSource(spec) if spec.kind == "udp" else PhoneSource(spec)
+    kinds: dict[str, Callable[[Spec], Source]] = {
+        "serial": open_serial,
+        "ws": WsSource,
+        "udp": UdpSource,
+        "phone": PhoneSource,
+        "lsl": LslSource,
+    }
+    return kinds[spec.kind](spec)
 
 
 def open_recording(spec: Spec) -> tuple[Recording, Truth | None]:

@@ -10,7 +10,7 @@ from urllib.parse import unquote
 from app.formats.options import KEYS
 from app.motion import InputError
 
-LIVE = ("serial", "ws", "udp", "phone")
+LIVE = ("serial", "ws", "udp", "phone", "lsl")
 KINDS = ("replay", "sim", *LIVE)
 SLOWEST, FASTEST = 0.1, 8.0
 
@@ -47,7 +47,7 @@ def parse_spec(text: str) -> Spec:
     """The SPEC as typed; ``InputError`` names what is wrong: form, option or number."""
     kind, rest = _kind(text)
     target, _, query = rest.partition("?")
-    if not target and kind != "phone":
+    if not target and kind not in ("phone", "lsl"):
         raise InputError(f"{text!r}: no {_EXPECTED[kind]}, expected e.g. sim:walk")
     options = _options(text, query)
     if kind in LIVE:

@@ -9,14 +9,12 @@ import pytest
 
 from app.motion import InputError
 from app.outputs import forwarder
-from app.outputs.forwarder import UdpSender, WsSender, sender_to
+from app.outputs.forwarder import Links, UdpSender, WsSender, sender_to
 from app.sources.spec import parse_spec
 from app.sources.udp import UdpSource
 from app.sources.ws import WsSource
 from tests.sources.links import Reader, walk
 from tests.sources.proxies import Cable
-
-MEGABYTE = 2**20
 
 
 class Line:
@@ -31,7 +29,7 @@ class Line:
     async def __aenter__(self) -> Line:
         await self.cable.plug_in()
         address = f"ws://127.0.0.1:{self.cable.port}"
-        self.sender = WsSender(address, 5, None, MEGABYTE, self.told.append)
+        self.sender = WsSender(address, 5, Links(), self.told.append)
         self.task = asyncio.create_task(self.sender.run())
         return self
 
@@ -114,7 +112,7 @@ def test_a_full_memory_gives_up_the_oldest_and_says_so() -> None:
         cable = Cable(source.port)
         await cable.plug_in()
         cable.cut()
-        sender = WsSender(f"ws://127.0.0.1:{cable.port}", 5, None, 50_000, lambda _: None)
+        sender = WsSender(f"ws://127.0.0.1:{cable.port}", 5, Links(limit_bytes=50_000), lambda _: None)
         for sample in walk(5000):
             sender.send(sample)
         task = asyncio.create_task(sender.run())
@@ -154,7 +152,7 @@ def test_a_receiver_that_refuses_the_token_ends_it(tmp_path: Path) -> None:
     async def main() -> None:
         source = WsSource(parse_spec(f"ws:0?token-file={tmp_path / 'token'}"))
         with pytest.raises(InputError, match="token"):
-            await WsSender(f"ws://127.0.0.1:{source.port}", 5, "wrong", MEGABYTE, print).run()
+            await WsSender(f"ws://127.0.0.1:{source.port}", 5, Links("wrong"), print).run()
         source.close()
 
     asyncio.run(main())
@@ -192,4 +190,4 @@ def test_datagrams_arrive_and_a_lost_one_is_made_good_by_the_next() -> None:
 )
 def test_an_address_that_is_none_is_said(address: str) -> None:
     with pytest.raises(InputError, match="expected"):
-        sender_to(address, 1, None, MEGABYTE, print)
+        sender_to(address, 1, Links(), print)
