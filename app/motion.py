@@ -452,9 +452,34 @@ class Rename:
     to: str
 
 
+@dataclass(frozen=True)
+class Calibrate:
+    """The guided calibration: ``start``, ``back``, ``save``, ``undo``, ``redo`` or ``cancel``."""
+
+    do: str
+    sensor: str = ""
+
+
+@dataclass(frozen=True)
+class CheckFirst:
+    """The look before a walk: ``start``, ``skip``, ``swap`` or ``close``."""
+
+    do: str
+
+
 ReplayCommand = Pause | Step | Speed | Seek | Loop
 Command = (
-    SessionCommand | FindGains | LoadProfile | SaveProfile | ReplayCommand | Record | Mark | Play | Rename
+    SessionCommand
+    | FindGains
+    | LoadProfile
+    | SaveProfile
+    | ReplayCommand
+    | Record
+    | Mark
+    | Play
+    | Rename
+    | Calibrate
+    | CheckFirst
 )
 
 
@@ -589,6 +614,45 @@ class GuideView(NamedTuple):
     done: bool
 
 
+class LineState(StrEnum):
+    """Of one line of the pre-flight."""
+
+    WAIT = "waiting"
+    NOW = "now"
+    GOOD = "good"
+    BAD = "bad"
+
+
+class Line(NamedTuple):
+    """One line of the pre-flight: what was found, or what to do."""
+
+    name: str
+    state: LineState
+    told: str
+
+
+class PreflightView(NamedTuple):
+    """The look before a walk."""
+
+    lines: tuple[Line, ...]
+    words: str  # what to do now
+    done: bool
+    good: bool  # done, and every line good
+    seconds: float
+    names: tuple[tuple[str, Role], ...]  # which sensor is which foot
+
+
+class CalibrationView(NamedTuple):
+    """Which sensors are corrected, and a calibration under way or just ended."""
+
+    sensors: tuple[str, ...]  # that can be calibrated
+    applied: Mapping[str, str]  # sensor → when its calibration was made
+    undone: tuple[str, ...]  # sensors with one that is not applied
+    guide: GuideView | None = None
+    found: tuple[str, ...] = ()  # the result in lines, once it is done
+    damaged: str = ""  # one line: a file that cannot be used
+
+
 class TrackView(NamedTuple):
     """One named track, now."""
 
@@ -686,6 +750,8 @@ class Status:
     sweep_progress: float | None = None  # 0…1 while it runs
     profiles: tuple[str, ...] = ()
     recording: RecorderState | None = None
+    calibration: CalibrationView | None = None
+    preflight: PreflightView | None = None
     shelf: tuple[ShelfFile, ...] = ()
 
 

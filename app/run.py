@@ -25,6 +25,7 @@ import numpy as np
 
 from app import motion as m
 from app import profiles
+from app.before import Before
 from app.clocks import Clock, clock_for
 from app.door.access import Access
 from app.door.files import Files
@@ -104,6 +105,7 @@ class Viewer:
         self._fresh = asyncio.Event()  # there is something that no frame has shown
         # two for a search, one so that a slider never waits for it
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
+        self._before = Before(lambda: self._source.info, self._mark_preflight)
         self._seen: m.Snapshot | None = None  # the newest that was drawn
         self._shown: m.Status | None = None  # with it
         self._frames = 0
@@ -191,6 +193,7 @@ class Viewer:
         self._source.close()
         self._source, before = source, self._session
         self._options = replace(self._options, source=spec)
+        self._before = Before(lambda: self._source.info, self._mark_preflight)
         self._session = self._new_session(source.settings or before.main.settings, before.epoch + 1)
         self._status = replace(self._status, sweep=None, sweep_progress=None)
         self._last_sample_s = time.monotonic()
@@ -207,14 +210,21 @@ class Viewer:
                     self._recorder.start(self._start())
             elif isinstance(item, m.Order):
                 self._take_order(item)
-            elif isinstance(item, m.Stretch):
+            elif isinstance(item, m.Stretch) and not self._before.wants_each:
                 await self._take_stretch(item)
+            elif isinstance(item, m.Stretch):
+                for sample in item.each():
+                    self._take_sample(sample)
             else:
-                self._session.take(item)
-                if self._recorder is not None:
-                    self._recorder.sample(item)
-                self._fresh.set()
-                self._last_sample_s = time.monotonic()
+                self._take_sample(item)
+
+    def _take_sample(self, sample: m.Sample) -> None:
+        sample = self._before.sample(sample)
+        self._session.take(sample)
+        if self._recorder is not None:
+            self._recorder.sample(sample)
+        self._fresh.set()
+        self._last_sample_s = time.monotonic()
 
     async def _take_stretch(self, stretch: m.Stretch) -> None:
         self._session.take_stretch(stretch)
@@ -248,7 +258,8 @@ class Viewer:
         self._say("")
 
     def _role(self, sensor: str) -> m.Role:
-        return self._source.info.sensors.get(sensor) or m.role_of(sensor)
+        named = self._before.names.get(sensor)
+        return named or self._source.info.sensors.get(sensor) or m.role_of(sensor)
 
     def _clock(self, sensor: str) -> Clock:
         return clock_for(self._source.info, sensor)
@@ -277,6 +288,10 @@ class Viewer:
                     self._librarian.take(command)
                 case m.Mark(text):
                     self._mark(order.who, text)
+                case m.Calibrate() as command:
+                    self._say(self._before.calibrate(command))
+                case m.CheckFirst() as command:
+                    self._before.check(command, {s: store.role for s, store in self._session.stores.items()})
                 case _:
                     self._apply(order)
         except m.InputError as error:
@@ -315,6 +330,10 @@ class Viewer:
         if self._recorder is None:
             raise m.InputError("no recording to mark: start one first")
         self._recorder.marker(who, text)
+
+    def _mark_preflight(self, told: str) -> None:
+        if self._recorder is not None:
+            self._recorder.marker("pre-flight", told)
 
     def _record_walk(self, feet: tuple[m.FootView, ...]) -> None:
         """Where the feet are drawn, and the strides that ended since the last look."""
@@ -417,7 +436,8 @@ class Viewer:
             try:
                 snapshot = self._seen = self._session.snapshot()
                 self._record_walk(snapshot.main.feet)
-                self._shown = self._status_now()
+                self._shown = self._before.look(snapshot, self._status_now())
+                self._session.name_feet(self._before.names)
                 scene.draw(snapshot, self._shown)
                 self._frames += 1
             except Exception:
@@ -454,6 +474,8 @@ class Viewer:
         """For /healthz; read on the door's thread, so only what is one read."""
         told: dict[str, object] = {"link": self._source.link.value, "taken": self._session.number}
         told["line"] = {sensor: vars(counters) for sensor, counters in self._source.counters.items()}
+        checked = self._shown.preflight if self._shown else None
+        told["preflight"] = checked._asdict() if checked else None
         return told | {"sensors": report(self._seen.health) if self._seen else {}}
 
 

@@ -8,7 +8,7 @@ on whatever thread, brings the result back with ``adopt``. The result does not d
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 
 from app import motion as m
@@ -118,6 +118,12 @@ class Session:
         store = self.stores[sensor] = SensorStore(sensor, self._roles(sensor), clock)
         self._monitors[sensor] = Monitor(clock)
         return store
+
+    def name_feet(self, roles: Mapping[str, m.Role]) -> None:
+        """Which sensor is which foot, as somebody found out meanwhile: for display only."""
+        for sensor, role in roles.items():
+            if sensor in self.stores:
+                self.stores[sensor].role = role
 
     def apply(self, order: m.Order) -> None:
         """One order; it takes effect after the samples taken so far. An impossible one is ``InputError``."""

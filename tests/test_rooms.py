@@ -18,6 +18,7 @@ HEART = {
     "graphs",
     "clocks",
     "health",
+    "preflight",
     "blocks",
     "warm",
     "motion",
@@ -47,7 +48,7 @@ SHELL = {
     "shelf",
 }
 #: Parts of the shell that others of it wire in.
-WIRED = {"run": {"librarian"}, "librarian": {"shelf"}}
+WIRED = {"run": {"before", "librarian"}, "librarian": {"shelf"}}
 CLOCKS_AND_FILES = {"asyncio", "concurrent", "glob", "http", "multiprocessing", "os", "pathlib", "selectors"}
 CLOCKS_AND_FILES |= {"shutil", "socket", "ssl", "subprocess", "tempfile", "threading", "time", "urllib"}
 ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources", "zstandard": "compressed"}

@@ -31,6 +31,7 @@ def add(commands: Commands) -> None:
 def run(options: argparse.Namespace) -> int:
     """Lead through it, show what was found, keep it for the sensor."""
     from app import calibrate, calibrations
+    from app.calibration.telling import table
     from app.calibration.words import to_json
 
     if not 9.5 <= options.gravity <= 10.0:
@@ -48,7 +49,7 @@ def run(options: argparse.Namespace) -> int:
     )
     chosen = fit if options.method == "fit" else report
     text = to_json(chosen)
-    print("\n" + "\n".join(calibrate.table(fit, report)), file=out)
+    print("\n" + "\n".join(table(fit, report)), file=out)
     if options.out is not None:
         try:
             options.out.write_text(text, "utf-8")

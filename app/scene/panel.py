@@ -11,6 +11,7 @@ import viser
 from app.motion import ResetHeading, RestartHere, Snapshot, Status
 from app.scene import figures, phones
 from app.scene.beat import beat
+from app.scene.before import BeforeTab
 from app.scene.controls import Ask, Controls, Html, Input
 from app.scene.graphs import Graphs
 from app.scene.hindsight import CandidateBox, GainSearch
@@ -63,6 +64,8 @@ class Panel:
             self._source, self._log = self._source_tab(gui)
         with tabs.add_tab("Library"):
             self._library = Library(controls)
+        with tabs.add_tab("Before"):
+            self._before = BeforeTab(controls)
         with tabs.add_tab("View"):
             self._switches = self._view_tab(gui, view)
         self._graphs = _graph_panel(gui)
@@ -132,6 +135,7 @@ class Panel:
         self._search.show(snapshot, status)
         self._tuning.show(snapshot)
         self._profiles.show(status)
+        self._before.show(status)
         for name, control in self._switches.items():
             control.show(view[name])
 
