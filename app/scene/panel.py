@@ -34,6 +34,7 @@ NOTES = (
     "Grid: 1 m, bold 5 m. Frame n: x north, y east, z down; quaternions wxyz.",
     "Distance is the sum of horizontal stride lengths; to start, the horizontal way back.",
     "Cadence = 2 × 60 s ÷ stride duration. Speed = stride length ÷ stride duration.",
+    "Ring at a shoe: the foot is inside it 95 times of 100; orange: drifting or lost.",
     "Height is the sensor's, above the start. Dashed: the newest stride, not yet corrected.",
 )
 

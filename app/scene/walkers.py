@@ -9,6 +9,7 @@ import viser
 
 from app.motion import FootView, Role, Snapshot, Trail, Vector
 from app.scene.colours import CANDIDATE, FOOT, TRUTH, Rgb, blend
+from app.scene.doubt import Doubt
 from app.scene.footprints import Footprints
 from app.scene.guard import drawable, unit
 from app.scene.shoe import SENSOR_HEIGHT_M, Shadow, Shoe, yaw
@@ -54,6 +55,7 @@ class Walker:
         self._scene, self._name, self._role, self._offset = scene, name, role, offset
         self.shoe = Shoe(scene, f"/ned/{name}", role)
         self._shadow = Shadow(scene, f"/ned/shadow/{name}", role)
+        self._doubt = Doubt(scene, f"/ned/doubt/{name}", role)
         self._trail = TrailNodes(scene, name, look(role), offset)
         self._prints = Footprints(scene, name, role, offset)
         self._ghost: Shoe | None = None
@@ -69,6 +71,7 @@ class Walker:
         place, turn = self._moved(foot.position_n), unit(foot.q_nb)
         self.shoe.pose(turn, place)
         self._shadow.lie(place, yaw(turn), floor(foot))
+        self._doubt.lie(place, floor(foot), foot.trust)
         return place
 
     def draw_ghost(self, foot: FootView | None) -> None:
@@ -104,7 +107,7 @@ class Walker:
     def remove(self) -> None:
         """Take the foot and all that is its off the page."""
         self._drop_ghost()
-        for part in (self.shoe, self._shadow, self._trail, self._prints, self._truth_trail):
+        for part in (self.shoe, self._shadow, self._doubt, self._trail, self._prints, self._truth_trail):
             if part is not None:
                 part.remove()
 
