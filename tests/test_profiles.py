@@ -122,6 +122,25 @@ def test_no_name_leaves_the_folder(home: Path, name: str) -> None:
     assert not profiles.folder().exists()
 
 
+@settings(suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(
+    st.text(max_size=45)
+    | st.lists(st.sampled_from(["..", ".", "/", "\\", "a", "ä", " ", "-", "\0", "\n", "~"])).map("".join)
+)
+def test_whatever_the_name_only_its_own_file_is_written(home: Path, name: str) -> None:
+    before = {path for path in home.rglob("*") if path.is_file()}
+    try:
+        profiles.save(name, PAPERS)
+    except InputError as error:
+        assert "\n" not in str(error)
+    made = {path for path in home.rglob("*") if path.is_file()} - before
+    assert made <= {profiles.folder() / f"{name}.toml"}
+    for path in made:
+        assert path.resolve().parent == profiles.folder().resolve()
+        assert profiles.load_named(name) == PAPERS
+        path.unlink()
+
+
 def test_a_built_in_profile_is_not_overwritten() -> None:
     with pytest.raises(InputError, match="built in"):
         profiles.save("papers", Settings(gain_stance=2.0))

@@ -5,6 +5,7 @@ Who sends needs a token of his own (it lets send and nothing else) or the operat
 
 from __future__ import annotations
 
+import asyncio
 import base64
 import hashlib
 import hmac
@@ -21,6 +22,7 @@ from app.door import codes
 from app.door.access import Access, Visitor, is_loopback
 from app.door.addresses import reachable
 from app.door.gate import Gate, Refusal
+from app.door.pace import Pace
 from app.door.upstream import VISITOR, is_websocket, say
 
 HERE = Path(__file__).parent
@@ -28,6 +30,8 @@ PHONE, FEED, PUSH, CODE = "/phone", "/feed", "/push", "/phone-code.svg"
 MOST_MESSAGE_BYTES = 65_536
 MOST_PUSH_BYTES = 2_000_000
 MOST_SENDERS = 32
+#: What one sender may send: two feet at 400 Hz, one message a sample, and as much again.
+MESSAGES_PER_S, BYTES_PER_S = 1600.0, 1_000_000.0
 PING_SECONDS = 15.0
 _POLICY = (
     "default-src 'none'; script-src 'nonce-{nonce}'; style-src 'nonce-{nonce}'; "
@@ -129,9 +133,11 @@ class Ingest:
         self.senders += 1
         try:
             await socket.prepare(request)
+            pace, clock = Pace(MESSAGES_PER_S, BYTES_PER_S), asyncio.get_running_loop().time
             async for message in socket:
                 if message.type in (WSMsgType.TEXT, WSMsgType.BINARY):
                     await socket.send_str(self.taker.take(message.data))
+                    await asyncio.sleep(pace.delay_s(len(message.data), clock()))
         finally:
             self.senders -= 1
         return socket

@@ -120,7 +120,8 @@ class Controls:
         return self._wire(handle, rule, lambda value: ask(str(value)), handle.on_update)
 
     def offer(self, dropdown: Input, options: Sequence[str]) -> None:
-        """Give a dropdown other options."""
+        """Give a dropdown other options. What cannot be sent as text would end every browser's page."""
+        options = [option for option in options if option.isprintable()]
         if tuple(dropdown.handle.options) != tuple(options):
             self._set_rule(dropdown.id, GuiRule("choice", choices=tuple(options)))
             dropdown.handle.options = tuple(options)
