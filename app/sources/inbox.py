@@ -7,6 +7,7 @@ import threading
 import time
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 
+from app.formats.wire.stream import Counters
 from app.motion import Link, Role, Sample, SourceInfo, role_of
 from app.sources.source import Item, Live
 
@@ -21,17 +22,18 @@ MOST = 1_500_000
 
 
 class Inbox(Live):
-    """A live source that is filled by ``put``. What it says of itself comes from ``told`` and ``dropped``."""
+    """A live source that is filled by ``put``. What it says of itself comes from ``told`` and ``line``."""
 
     def __init__(
         self,
         name: str,
         format_: str,
         told: Callable[[], Sequence[str]] = tuple,
-        dropped: Callable[[], Mapping[str, int]] = dict,
+        line: Callable[[], Mapping[str, int]] = dict,
+        counters: Callable[[], Mapping[str, Counters]] = dict,
     ) -> None:
         self._name, self._format = name, format_
-        self._told, self._dropped = told, dropped
+        self._told, self._line, self._counters = told, line, counters
         self._lock = threading.Lock()
         self._waiting: list[Sample] = []
         self._sensors: dict[str, Role] = {}
@@ -70,12 +72,15 @@ class Inbox(Live):
     @property
     def info(self) -> SourceInfo:
         """Who has sent what so far."""
-        dropped = {reason: count for reason, count in self._dropped().items() if count}
+        line = {what: count for what, count in self._line().items() if count}
         if self._overflowed:
-            dropped["came faster than the walk could take them"] = self._overflowed
-        return SourceInfo(
-            self._name, self._format, self._sensors, assumed=tuple(self._told()), dropped=dropped
-        )
+            line["came faster than the walk could take them"] = self._overflowed
+        return SourceInfo(self._name, self._format, self._sensors, assumed=tuple(self._told()), line=line)
+
+    @property
+    def counters(self) -> Mapping[str, Counters]:
+        """What became of the bytes."""
+        return self._counters()
 
     @property
     def silent_s(self) -> float | None:

@@ -29,7 +29,13 @@ class PhoneSource(Inbox):
         self._intake = Intake(self._options)
         self._logged = Intake()
         self._phones: dict[str, Phone] = {}
-        super().__init__("phone", "a phone's page, Sensor Logger or messages", self._told, self._lost)
+        super().__init__(
+            "phone",
+            "a phone's page, Sensor Logger or messages",
+            self._told,
+            self._lost,
+            lambda: {"messages": self._intake.counters},
+        )
 
     def take(self, data: bytes | str) -> str:
         """A message of ours; what to answer."""

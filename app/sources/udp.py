@@ -44,6 +44,7 @@ class UdpSource(Inbox):
             "datagrams",
             lambda: self._datagrams.notes,
             lambda: self._datagrams.lost(),
+            lambda: self._datagrams.counters(),
         )
         self._ending = threading.Event()
         self._thread = threading.Thread(target=self._listen, name="udp", daemon=True)

@@ -49,7 +49,13 @@ class WsSource(Inbox):
         self._intake = Intake(options)
         self._refused = 0
         self._connected = 0
-        super().__init__(f"ws:{spec.target}", "Stridescope messages", lambda: self._intake.notes, self._lost)
+        super().__init__(
+            f"ws:{spec.target}",
+            "Stridescope messages",
+            lambda: self._intake.notes,
+            self._lost,
+            lambda: {"messages": self._intake.counters},
+        )
         listener = bind(spec, host, port, socket.SOCK_STREAM)
         self.port: int = listener.getsockname()[1]
         self._stop: Callable[[], object] | None = None

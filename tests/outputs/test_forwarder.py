@@ -49,7 +49,7 @@ class Line:
         await self.reader.until(lambda: len(self.reader.got) >= 2 * count)
         assert self.reader.of("left") == walk(count)
         assert self.reader.of("right") == walk(count, "right")
-        assert self.source.info.dropped.get("lost on the way", 0) == 0
+        assert self.source.info.line.get("lost on the way", 0) == 0
 
 
 @pytest.fixture(autouse=True)
@@ -141,7 +141,7 @@ def test_a_source_that_begins_anew_is_a_new_session() -> None:
             await asyncio.wait_for(line.sender.finish(), 60)
             await line.reader.until(lambda: len(line.reader.got) == 100)
             assert [s.seq for s in line.reader.got] == list(range(100))
-            assert line.source.info.dropped == {}
+            assert line.source.info.line == {}
 
     asyncio.run(main())
 
@@ -170,7 +170,7 @@ def test_datagrams_arrive_and_a_lost_one_is_made_good_by_the_next() -> None:
             await asyncio.sleep(0.001)
         await reader.until(lambda: len(reader.got) == 100)
         assert [s.seq for s in reader.got] == list(range(100))
-        assert source.info.dropped.get("lost on the way", 0) == 0
+        assert source.info.line.get("lost on the way", 0) == 0
         assert "34 samples sent" in sender.summary()
         reader.stop()
 

@@ -59,7 +59,7 @@ def test_it_says_who_has_sent_and_whether_anybody_does(monkeypatch: pytest.Monke
     assert str(box.link) == Link.LIVE
     assert box.detail == ""
     assert {name: role.value for name, role in box.info.sensors.items()} == {"left": "left", "right": "right"}
-    assert (box.info.assumed, box.info.dropped) == (("a note",), {"lost": 3})
+    assert (box.info.assumed, box.info.line) == (("a note",), {"lost": 3})
     monkeypatch.setattr(inbox, "SILENT_S", 0.0)
     assert str(box.link) == Link.LOST
     assert "any more" in box.detail
@@ -70,7 +70,7 @@ def test_a_walk_that_never_reads_costs_a_stated_memory(monkeypatch: pytest.Monke
     box = Inbox("test", "test")
     for i in range(1000):
         box.put([sample(i)])
-    dropped = sum(box.info.dropped.values())
+    dropped = sum(box.info.line.values())
     got = asyncio.run(read(box, 1000 - dropped))
     assert got == list(range(dropped, 1000))
     assert len(got) <= 100

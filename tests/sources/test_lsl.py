@@ -51,7 +51,7 @@ def test_two_feet_go_out_and_come_in(pylsl, name: str) -> None:
             assert [s.specific_force_b for s in got] == [s.specific_force_b for s in sent]
             assert [s.field_b for s in got] == [s.field_b for s in sent]
             assert all(a.device_ns < b.device_ns for a, b in pairwise(got))
-        assert sum(source.info.dropped.values()) == 0
+        assert sum(source.info.line.values()) == 0
         reader.stop()
 
     asyncio.run(main())

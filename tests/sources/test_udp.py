@@ -35,7 +35,7 @@ def test_two_feet_and_a_sensor_of_another_make_on_one_port() -> None:
         assert reader.of("left") == walk(200)
         assert reader.of("right") == walk(200, "right")
         assert source.link is Link.LIVE
-        assert source.info.dropped == {}
+        assert source.info.line == {}
         assert any("NGIMU" in note for note in source.info.assumed)
         reader.stop()
         for each in (left, right, other):
@@ -57,7 +57,7 @@ def test_sixteen_sensors_at_400_hz_lose_nothing() -> None:
             if i % 4 == 3:
                 await reader.until(lambda i=i: len(reader.got) >= 16 * (i + 1))  # type: ignore[misc]
         assert all(len(reader.of(f"s{k}")) == 400 for k in range(16))
-        assert source.info.dropped == {}
+        assert source.info.line == {}
         reader.stop()
         for each in sockets:
             each.close()

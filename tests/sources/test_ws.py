@@ -51,7 +51,7 @@ def test_a_sender_that_reconnects_and_sends_again_is_taken_once() -> None:
                 await sender.recv()
         await reader.until(lambda: len(reader.got) == 40)
         assert reader.of("left") == walk(40)
-        assert source.info.dropped == {"came twice": 40}
+        assert source.info.line == {"came twice": 40}
         reader.stop()
 
     asyncio.run(main())
@@ -109,7 +109,7 @@ def test_without_the_token_nobody_is_let_in(tmp_path: Path) -> None:
             assert isinstance(decode_reply(await sender.recv()), Ack)
         async with connect(address(source) + "/?token=a%20secret"):
             pass
-        assert source.info.dropped == {"refused senders": 4}
+        assert source.info.line == {"refused senders": 4}
         source.close()
 
     asyncio.run(main())

@@ -17,6 +17,7 @@ from app.formats.wire.catalogue import KINDS, Decoder
 from app.formats.wire.identify import Identifier
 from app.formats.wire.intake import Intake
 from app.formats.wire.message import MAGIC
+from app.formats.wire.stream import Counters
 from app.motion import Sample
 
 MOST_SENDERS = 64
@@ -32,6 +33,7 @@ class _Sender:
 
     listening: Identifier | None
     decoder: Decoder | None = None
+    sensor: str = ""
     heard: int = 0
     last_ns: int = 0
 
@@ -54,14 +56,21 @@ class Datagrams:
     @property
     def notes(self) -> list[str]:
         """What was found and what was assumed."""
-        told = [note for sender in self._senders.values() if sender.decoder for note in sender.decoder.notes]
+        told = [note for decoder in self._decoders().values() for note in decoder.notes]
         return list(dict.fromkeys([*self._notes, *self.intake.notes, *told]))
+
+    def _decoders(self) -> dict[str, Decoder]:
+        """By their sensors; asked for from another thread than ``feed``'s, so of a copy."""
+        return {s.sensor: s.decoder for s in list(self._senders.values()) if s.decoder is not None}
+
+    def counters(self) -> dict[str, Counters]:
+        """What became of the bytes: of our messages together, of others by sensor."""
+        return {"messages": self.intake.counters} | {n: d.counters for n, d in self._decoders().items()}
 
     def lost(self) -> dict[str, int]:
         """What did not become a sample, by reason in words."""
         sums: Counter[str] = Counter()
-        decoders = [s.decoder for s in self._senders.values() if s.decoder]
-        for counters in (self.intake.counters, *(d.counters for d in decoders)):
+        for counters in self.counters().values():
             sums["lost on the way"] += counters.lost
             sums["came twice or too late"] += counters.repeated
             sums["unusable readings"] += counters.dropped
@@ -123,7 +132,7 @@ class Datagrams:
         return known.decoder.feed(heard, host_ns) if known.decoder else []
 
     def _open(self, known: _Sender, sender: Address, device: str, evidence: str) -> None:
-        name = self._name(sender)
+        name = known.sensor = self._name(sender)
         kind = KINDS.get(device)
         axes = self._options.axes or (kind.axes if kind else None)
         if kind is None or axes is None:
