@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -18,9 +19,12 @@ from app.gestures.words import Decision
 from app.motion import ATTITUDE, Floats, InputError, Recording, Role, Samples
 from app.outputs import tables
 from app.settings import Settings
+from app.sources.files import load, printable
 from app.sources.opening import open_recording
-from app.sources.spec import parse_spec
+from app.sources.spec import Spec, parse_spec
+from app.studies.words import Task
 from app.warm import warm_hindsight, warm_up
+from app.workers import Tell, run_all
 
 
 class Processed(NamedTuple):
@@ -35,6 +39,11 @@ class Processed(NamedTuple):
 def process(spec: str, settings: Settings) -> Processed:
     """Read and estimate a whole recording: the same compiled steps as live."""
     recording, _ = open_recording(parse_spec(spec))
+    return estimate(recording, settings)
+
+
+def estimate(recording: Recording, settings: Settings) -> Processed:
+    """Estimate a whole recording that has been read."""
     warm_up(settings.estimator)  # so that the seconds told are the estimator's, not the compiler's
     if settings.hindsight:
         warm_hindsight()
@@ -66,6 +75,76 @@ def summary(done: Processed) -> dict[str, object]:
         "settings": asdict(done.settings),
         "feet": {sensor: foot_summary(tracker) for sensor, tracker in done.trackers.items()},
     }
+
+
+class OfFolder(NamedTuple):
+    """What became of the files of a folder, in order of their names."""
+
+    folder: str
+    summaries: tuple[dict[str, object], ...]
+    skipped: tuple[tuple[str, str], ...]  # name, why
+    seconds: float  # of all workers together: reading, estimating, writing
+
+
+def process_folder(
+    spec: Spec, settings: Settings, out: Path | None, jobs: int, cluster: str | None, tell: Tell
+) -> OfFolder:
+    """Every recording of a folder; a file that is none is skipped, and said."""
+    folder = Path(spec.target).expanduser()
+    try:
+        files = sorted(path for path in folder.resolve().iterdir() if path.is_file())
+    except OSError as error:
+        raise InputError(f"{folder}: cannot be read ({error.strerror}), expected a folder") from None
+    place = out.resolve() if out else None
+    tasks = [Task(process_file, (path, spec.options, settings, place)) for path in files]
+    done = run_all(tasks, jobs, cluster, tell)
+    found = [(path.name, d.value) for path, d in zip(files, done, strict=True)]
+    return OfFolder(
+        str(folder),
+        tuple(value for _, value in found if isinstance(value, dict)),
+        tuple((printable(name), value) for name, value in found if isinstance(value, str)),
+        sum(d.seconds for d in done),
+    )
+
+
+def process_file(
+    path: Path, options: Mapping[str, str], settings: Settings, out: Path | None
+) -> dict[str, object] | str:
+    """One file of a folder: its summary, or why there is none; with ``out`` its tables too."""
+    try:
+        done = estimate(load(path, options), settings)
+        if out is not None:
+            write(done, out / path.name)
+    except InputError as error:
+        return str(error)
+    return summary(done)
+
+
+def folder_summary(done: OfFolder) -> dict[str, object]:
+    """What ``process FOLDER --json`` prints."""
+    return {
+        "folder": done.folder,
+        "recordings": list(done.summaries),
+        "skipped": [{"file": name, "why": why} for name, why in done.skipped],
+        "seconds": done.seconds,
+        "estimator_s": sum(float(str(one["estimator_s"])) for one in done.summaries),
+    }
+
+
+def folder_lines(done: OfFolder) -> list[str]:
+    """A folder for a person: a line a foot."""
+    text = [f"{done.folder}: {len(done.summaries)} recordings, {len(done.skipped)} files skipped"]
+    width = max((len(str(one["recording"])) for one in done.summaries), default=0)
+    for one in done.summaries:
+        feet: Any = one["feet"]
+        for sensor, foot in feet.items():
+            share = "" if foot["closure_pct"] is None else f" {foot['closure_pct']:7.2f} %"
+            closes = f"closes {foot['closure_m']:8.2f} m{share}"
+            text.append(
+                f"  {one['recording']!s:<{width}}  {sensor:<6} {one['duration_s']:7.1f} s"
+                f" {foot['strides']:5d} strides {foot['distance_m']:9.2f} m, {closes}"
+            )
+    return text + [f"  skipped {name}: {why}" for name, why in done.skipped]
 
 
 def foot_summary(tracker: Tracker) -> dict[str, object]:

@@ -79,9 +79,9 @@ def _pooled(tasks: Sequence[Task], waiting: Sequence[int], jobs: int) -> Iterato
 
 
 def _on_cluster(tasks: Sequence[Task], address: str, tell: Tell) -> list[Done]:
-    client_of: Any = _dask()
+    dask = _dask()
     try:
-        client = client_of(address, timeout="10s")
+        client = dask.Client(address, timeout="10s")
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
             f"--cluster {address}: {error}: expected the address of a running Dask scheduler,"
@@ -90,24 +90,23 @@ def _on_cluster(tasks: Sequence[Task], address: str, tell: Tell) -> list[Done]:
     with client:
         # pure=False: two equal tasks are two tasks; retries: a task lost with its worker runs again
         futures = [client.submit(run_task, task, pure=False, retries=LIVES) for task in tasks]
-        for count, _ in enumerate(_completed(futures), start=1):
+        for count, _ in enumerate(dask.as_completed(futures), start=1):
             tell(count, len(tasks))
-        found: list[Done] = client.gather(futures)
+        try:
+            found: list[Done] = client.gather(futures)
+        except ImportError as error:
+            raise InputError(
+                f"--cluster {address}: {error}: expected workers with the same stridescope and Python as here"
+            ) from None
     return found
 
 
 def _dask() -> Any:
     try:
-        from distributed import Client
+        import distributed
     except ImportError:
         raise InputError(
             "--cluster: Dask is not installed, expected the package distributed:"
             " pip install 'stridescope[cluster]'"
         ) from None
-    return Client
-
-
-def _completed(futures: Sequence[Any]) -> Iterator[Any]:
-    from distributed import as_completed as completed
-
-    yield from completed(futures)
+    return distributed

@@ -5,23 +5,33 @@ from __future__ import annotations
 import argparse
 import json
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from app.commands.shared import Commands, add_json, add_settings, settings_of
+from app.commands.workers import add_workers, bar, jobs_of
+
+if TYPE_CHECKING:
+    from app.sources.spec import Spec
 
 
 def add(commands: Commands) -> None:
     """Its options."""
-    process = commands.add_parser("process", help="a recording without a browser")
-    process.add_argument("recording", metavar="RECORDING")
+    process = commands.add_parser("process", help="a recording, or a folder of them, without a browser")
+    process.add_argument("recording", metavar="RECORDING|FOLDER")
     add_settings(process)
     process.add_argument("--out", metavar="DIR", type=Path, help="write trajectory and strides there")
     add_json(process)
+    add_workers(process)
 
 
 def run(options: argparse.Namespace) -> int:
     """A recording without a browser."""
     from app import batch
+    from app.sources.spec import parse_spec
 
+    spec = parse_spec(options.recording)
+    if spec.kind == "replay" and Path(spec.target).expanduser().is_dir():
+        return run_folder(options, spec)
     done = batch.process(options.recording, settings_of(options))
     files = batch.write(done, options.out) if options.out else []
     if options.json:
@@ -31,4 +41,19 @@ def run(options: argparse.Namespace) -> int:
         print(line)
     for path in files:
         print(f"wrote {path}")
+    return 0
+
+
+def run_folder(options: argparse.Namespace, spec: Spec) -> int:
+    """Every recording of a folder."""
+    from app import batch
+
+    done = batch.process_folder(
+        spec, settings_of(options), options.out, jobs_of(options), options.cluster, bar
+    )
+    if options.json:
+        print(json.dumps(batch.folder_summary(done)))
+        return 0
+    for line in batch.folder_lines(done):
+        print(line)
     return 0

@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import sys
 from pathlib import Path
 
 from app.commands.shared import Commands, add_json
-from app.motion import InputError
+from app.commands.workers import add_workers, bar, jobs_of
 
 #: Where the report goes if nobody says where.
 USUAL_OUT = Path("studies")
-_BAR = 30
 
 
 def add(commands: Commands) -> None:
@@ -33,23 +31,6 @@ def add(commands: Commands) -> None:
     add_workers(study)
 
 
-def add_workers(command: argparse.ArgumentParser) -> None:
-    """The options that say where the work is done."""
-    command.add_argument("--jobs", metavar="N", type=int, help="processes to use (all cores)")
-    command.add_argument("--cluster", metavar="ADDRESS", help="a running Dask scheduler to use instead")
-
-
-def jobs_of(options: argparse.Namespace) -> int:
-    """How many processes."""
-    from app.workers import cores
-
-    if options.jobs is None:
-        return cores()
-    if not 1 <= options.jobs <= 1024:
-        raise InputError(f"--jobs {options.jobs}: expected 1 to 1024")
-    return int(options.jobs)
-
-
 def run(options: argparse.Namespace) -> int:
     """The papers' studies."""
     from app import study
@@ -67,12 +48,3 @@ def run(options: argparse.Namespace) -> int:
     for path in files:
         print(f"wrote {path}")
     return 0
-
-
-def bar(done: int, of: int) -> None:
-    """How far it is, on standard error: a bar for a person, nothing into a file."""
-    if not sys.stderr.isatty():
-        return
-    filled = _BAR * done // of
-    end = "\r\033[K" if done == of else ""
-    print(f"\r[{'█' * filled}{'·' * (_BAR - filled)}] {done}/{of}{end}", end="", file=sys.stderr, flush=True)
