@@ -15,13 +15,14 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import accuracy, cost, door, gestures, ghost, page, start
+from benchmarks import accuracy, cost, decoders, door, gestures, ghost, page, start
 from benchmarks.figures import Figure, Section, table
 
 SECTIONS = {
     "accuracy": accuracy.accuracy,
     "cost": cost.cost,
     "start": start.start,
+    "decoders": decoders.decoders,
     "gestures": gestures.gestures,
     "ghost": ghost.ghost,
     "page": page.page,

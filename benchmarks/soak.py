@@ -1,7 +1,8 @@
-"""Benchmarks: ``make soak``, the long runs: kills of a recording, an hour before two browsers, handling.
+"""Benchmarks: ``make soak``, the long runs: kills of a recording, sensors, an hour before two browsers, handling.
 
 ``python benchmarks/soak.py [--minutes N] [--json]``: N minutes of clock in all (15 unless told: an hour
-of walk at 8× takes 7.5 of them, rough handling the other half), and about five more for the kills.
+of walk at 8× takes 7.5 of them, rough handling the other half), and about five more for the kills, ten for sensors
+on serial ports (two thirds of N).
 """
 
 from __future__ import annotations
@@ -13,12 +14,12 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import handling, hour, kills
+from benchmarks import handling, hour, kills, links
 from benchmarks.bench import machine, measure
 from benchmarks.figures import table
 
 USUAL_MINUTES = 15.0
-LEAST_MINUTES, MOST_MINUTES = 1.0, 58.0
+LEAST_MINUTES, MOST_MINUTES = 1.0, 30.0
 
 
 def main() -> int:
@@ -33,6 +34,9 @@ def main() -> int:
     count = kills.KILLS if options.minutes >= USUAL_MINUTES else kills.KILLS // 10
     parts = {
         f"{count} kills of a recording": kills.kills(count),
+        f"{options.minutes * 2 / 3:.1f} minutes of sensors on serial ports": links.links(
+            40 * options.minutes
+        ),
         f"{8 * half_s / 60:.0f} minutes of walk at 8×": hour.hour(half_s),
         f"{half_s / 60:.1f} minutes of rough handling": handling.handling(half_s),
     }

@@ -13,6 +13,8 @@ import tty
 from collections.abc import Callable
 from pathlib import Path
 
+#: What a real port's driver and its system keep for a host that is busy.
+BUFFER = 65536
 _LOOK_S = 0.02  # between looks whether a host has opened it
 _MOST = 4096
 
@@ -28,6 +30,7 @@ class Terminal:
         self._loop: asyncio.AbstractEventLoop | None = None  # where the host is heard
         self._master = -1
         self._hosted = False
+        self._waiting = b""  # for a host that is busy
         self.overrun = 0  # bytes that the host did not fetch in time
         self.plug()
 
@@ -90,10 +93,10 @@ class Terminal:
         """Send; nobody hears what no host is there for, or does not fetch."""
         if not self._hosted:
             return
-        written = 0
-        with contextlib.suppress(OSError):
-            written = os.write(self._master, data)
-        self.overrun += len(data) - written
+        kept = data[: BUFFER - len(self._waiting)]
+        self.overrun += len(data) - len(kept)
+        self._waiting += kept
+        self._flush()
 
     def close(self) -> None:
         """Take it away, and its link."""
@@ -113,8 +116,20 @@ class Terminal:
         else:
             self._leave()
 
+    def _flush(self) -> None:
+        written = 0
+        with contextlib.suppress(OSError):
+            written = os.write(self._master, self._waiting)
+        self._waiting = self._waiting[written:]
+        if self._loop is not None:
+            if self._waiting:
+                self._loop.add_writer(self._master, self._flush)
+            else:
+                self._loop.remove_writer(self._master)
+
     def _leave(self) -> None:
-        self._hosted = False
+        self._hosted, self._waiting = False, b""
         if self._loop is not None:
             self._loop.remove_reader(self._master)
+            self._loop.remove_writer(self._master)
             self._loop = None

@@ -127,7 +127,7 @@ class NgimuDecoder:
         self._maker = Maker(sensor, axes, RANGES["ngimu"], NWU)
         self._clock = DeviceClock(1, 64)
         self._arrival = ArrivalClock()
-        self._timed = False
+        self._timed: bool | None = None  # whether packets tell their time: the first says it of all
         self._orientation: Quaternion | None = None
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
@@ -168,10 +168,11 @@ class NgimuDecoder:
         return self._maker.make(device_ns, host_ns, force, rate, (mx, my, mz), 0, q)
 
     def _stamp(self, tag: int, host_ns: int) -> int | None:
-        if tag == _IMMEDIATELY:
-            return None if self._timed else self._arrival.stamp(host_ns)  # one clock a stream
-        self._timed = True
-        return self._clock.stamp(nanoseconds(tag), host_ns)
+        timed = tag != _IMMEDIATELY
+        self._timed = timed if self._timed is None else self._timed
+        if timed is not self._timed:
+            return None  # one clock a stream
+        return self._clock.stamp(nanoseconds(tag), host_ns) if timed else self._arrival.stamp(host_ns)
 
 
 def nanoseconds(tag: int) -> int:

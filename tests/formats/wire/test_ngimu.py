@@ -95,3 +95,16 @@ def test_a_datagram_cut_short_is_no_packet(cut: int) -> None:
 )
 def test_what_is_no_osc(packet: bytes) -> None:
     assert parse(packet) is None
+
+
+@pytest.mark.parametrize("first", [1, 0, 5 << 32])
+def test_the_first_packet_says_for_all_whether_they_tell_their_time(first: int) -> None:
+    """Found by fuzzing: a time after packets without one went backward."""
+    decoder = NgimuDecoder("foot")
+    stamps = [
+        sample.device_ns
+        for number, tag in enumerate((first, 1, 0, 2 << 32, 1, 9 << 32))
+        for sample in decoder.feed(bundle(tag, SENSORS), number * 10_000_000)
+    ]
+    assert stamps == sorted(set(stamps))
+    assert decoder.counters.dropped == 6 - len(stamps) > 0
