@@ -1,8 +1,8 @@
-"""Benchmarks: ``make soak``, the long runs: kills of a recording, sensors, an hour before two browsers, handling.
+"""Benchmarks: ``make soak``, the long runs: kills of a recording, sensors, an hour of walk, handling.
 
 ``python benchmarks/soak.py [--minutes N] [--json]``: N minutes of clock in all (15 unless told: an hour
-of walk at 8× takes 7.5 of them, rough handling the other half), and about five more for the kills, ten for sensors
-on serial ports (two thirds of N).
+of walk at 8× takes 7.5 of them, rough handling the other half), two thirds of N more for sensors on serial
+ports, and about five minutes for the kills.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def main() -> int:
     options = parser.parse_args()
     if not LEAST_MINUTES <= options.minutes <= MOST_MINUTES:
         parser.error(f"--minutes {options.minutes:g}: expected {LEAST_MINUTES:g} to {MOST_MINUTES:g}")
-    half_s = 30.0 * options.minutes
+    half_s, ports_s = 30.0 * options.minutes, 40.0 * options.minutes
     count = kills.KILLS if options.minutes >= USUAL_MINUTES else kills.KILLS // 10
     parts = {
         f"{count} kills of a recording": kills.kills(count),
