@@ -34,9 +34,7 @@ def main() -> int:
     count = kills.KILLS if options.minutes >= USUAL_MINUTES else kills.KILLS // 10
     parts = {
         f"{count} kills of a recording": kills.kills(count),
-        f"{options.minutes * 2 / 3:.1f} minutes of sensors on serial ports": links.links(
-            40 * options.minutes
-        ),
+        f"{ports_s / 60:.1f} minutes of sensors on serial ports": links.links(ports_s),
         f"{8 * half_s / 60:.0f} minutes of walk at 8×": hour.hour(half_s),
         f"{half_s / 60:.1f} minutes of rough handling": handling.handling(half_s),
     }
