@@ -83,7 +83,10 @@ class SerialPort(Live):
         assumed = () if spec.axes else (f"{mounting}: as is usual for it (axes= says otherwise)",)
         what = f"{kind.title} at {started.baud} baud"
         found = f"{started.device}: {started.evidence}"
-        return SourceInfo(name, what, roles, assumed=(found, *assumed, *decoder.notes), line=_line(decoder))
+        serial = str(getattr(started.setup, "serial", "") or "")
+        serials = {spec.foot: f"{kind.title} {serial}"} if serial else {}
+        told = (found, *assumed, *decoder.notes)
+        return SourceInfo(name, what, roles, assumed=told, line=_line(decoder), serials=serials)
 
     @property
     def link(self) -> Link:

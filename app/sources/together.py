@@ -37,6 +37,7 @@ class Together(Live):
             assumed=tuple(f"{_names(info)}: {sentence}" for info in infos for sentence in info.assumed),
             dropped=summed(info.dropped for info in infos),
             line=summed(info.line for info in infos),
+            serials={sensor: serial for info in infos for sensor, serial in info.serials.items()},
         )
 
     @property
