@@ -68,13 +68,16 @@ class Town:
     trees: tuple[Place, ...]
     lamps: tuple[Place, ...]
     targets: tuple[Place, ...]
+    benches: tuple[Box, ...] = ()
+    planters: tuple[Box, ...] = ()
 
     @cached_property
     def solid(self) -> Floats:
         """Walls that stop a walker: boxes [n, 4] as south, west, north, east."""
         poles = [(p.north - p.radius_m, p.east - p.radius_m, p.north + p.radius_m, p.east + p.radius_m)
                  for p in (*self.trees, *self.lamps)]  # fmt: skip
-        walls = [box[:4] for box in (*(b.box for b in self.buildings), self.landmark)]
+        houses = (b.box for b in self.buildings)
+        walls = [box[:4] for box in (*houses, self.landmark, *self.benches, *self.planters)]
         return np.array([*walls, *poles], dtype=np.float64).reshape(-1, 4)
 
     def free(self, north: float, east: float, radius_m: float) -> bool:
@@ -100,9 +103,10 @@ def make_town(seed: int = 0, targets: int = 8) -> Town:
                 trees += _square_trees(rng)
             else:
                 buildings += _buildings(rng, north, east)
+                trees += _street_trees(rng, north, east)
     town = Town(
         seed, half, tuple(blocks), _streets(centres, half), tuple(buildings), _around(0.0, 0.0, 2.5, 18.0),
-        tuple(trees), _lamps(centres), (),
+        tuple(trees), _lamps(centres), (), _benches(), _planters(),
     )  # fmt: skip
     return _with_targets(town, rng, targets)
 
@@ -144,9 +148,37 @@ def _buildings(rng: np.random.Generator, north: float, east: float) -> list[Buil
 
 
 def _square_trees(rng: np.random.Generator) -> list[Place]:
-    """A ring of trees around the landmark."""
-    angles = np.arange(10) * (2.0 * np.pi / 10.0) + rng.uniform(-0.1, 0.1, 10)
+    """A ring of trees around the landmark, with a way through from each side of the square."""
+    angles = (np.arange(12) + 0.5) * (2.0 * np.pi / 12.0) + rng.uniform(-0.06, 0.06, 12)
     return [Place(float(13.0 * np.cos(a)), float(13.0 * np.sin(a)), 0.25) for a in angles]
+
+
+def _street_trees(rng: np.random.Generator, north: float, east: float) -> list[Place]:
+    """A row of trees near the kerb on some sides of a block."""
+    off, along = 0.5 * BLOCK_M + PAVEMENT_M - 0.9, (-12.5, -4.2, 4.2, 12.5)
+    sides = [(sign * off, None) for sign in (-1.0, 1.0)] + [(None, sign * off) for sign in (-1.0, 1.0)]
+    rows = [side for side in sides if rng.random() < 0.6]
+    return [
+        Place(north + (place if n is None else n), east + (place if e is None else e), 0.2)
+        for n, e in rows
+        for place in (np.array(along) + rng.uniform(-0.5, 0.5, 4)).tolist()
+    ]
+
+
+def _benches() -> tuple[Box, ...]:
+    """Benches round the landmark, none in the way from a side of the square."""
+    places = [(s * 8.0, t * 4.5, 0.3, 0.9) for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
+    places += [(t * 4.5, s * 8.0, 0.9, 0.3) for s in (-1.0, 1.0) for t in (-1.0, 1.0)]
+    return tuple(Box(n - a, e - b, n + a, e + b, 0.45) for n, e, a, b in places)
+
+
+def _planters() -> tuple[Box, ...]:
+    """Flower beds in the corners of the square."""
+    return tuple(
+        Box(s * 16.5 - 1.6, t * 16.5 - 1.6, s * 16.5 + 1.6, t * 16.5 + 1.6, 0.5)
+        for s in (-1.0, 1.0)
+        for t in (-1.0, 1.0)
+    )
 
 
 def _lamps(centres: Floats) -> tuple[Place, ...]:

@@ -44,7 +44,7 @@ class Comfort:
 class Walker:
     """Where the camera is in *n* (m, rad clockwise from north) and how it moves."""
 
-    north: float = -8.0
+    north: float = -30.0  # in the street south of the square, which lies ahead
     east: float = 0.0
     heading_rad: float = 0.0
     ahead_mps: float = 0.0

@@ -1,0 +1,113 @@
+"""Edge, scene: meshes as binary glTF whose colours are shown as they are: light is in them already. Pure.
+
+Written by hand since viser's own meshes are always lit, and the exporters at hand know no unlit material.
+"""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_FLOAT, _USHORT, _UINT = 5126, 5123, 5125
+_VERTICES, _INDICES = 34962, 34963
+
+
+@dataclass(frozen=True)
+class Part:
+    """One mesh: vertices [n, 3] m, faces [m, 3], linear colours [n, 3 or 4] from 0 to 1.
+
+    ``places`` [n, 2] are where on ``picture`` (the bytes of a JPEG file) each vertex lies; the picture
+    multiplies the colours. ``clear`` lets what lies behind shine through by the fourth colour.
+    """
+
+    name: str
+    vertices: NDArray[np.float32]
+    faces: NDArray[np.uint32]
+    colours: NDArray[np.float32]
+    places: NDArray[np.float32] | None = None
+    picture: bytes | None = None
+    clear: bool = False
+
+
+class _Body:
+    """The binary chunk and what describes it."""
+
+    def __init__(self) -> None:
+        self.data = bytearray()
+        self.views: list[dict[str, Any]] = []
+        self.accessors: list[dict[str, Any]] = []
+
+    def view(self, data: bytes, target: int | None = None) -> int:
+        self.data += b"\0" * (-len(self.data) % 4)
+        view: dict[str, Any] = {"buffer": 0, "byteOffset": len(self.data), "byteLength": len(data)}
+        self.views.append(view if target is None else {**view, "target": target})
+        self.data += data
+        return len(self.views) - 1
+
+    def accessor(self, array: NDArray[Any], kind: str, component: int, target: int, **more: Any) -> int:
+        view = self.view(np.ascontiguousarray(array).tobytes(), target)
+        count = array.size if kind == "SCALAR" else len(array)
+        self.accessors.append(
+            {"bufferView": view, "componentType": component, "count": count, "type": kind, **more}
+        )
+        return len(self.accessors) - 1
+
+
+def glb(parts: Sequence[Part]) -> bytes:
+    """A file in which each part is a node of its own, so that what is out of view is not drawn."""
+    body = _Body()
+    pictures = [part.picture for part in parts if part.picture is not None]
+    images = [{"bufferView": body.view(p), "mimeType": "image/jpeg"} for p in pictures]
+    meshes = [{"primitives": [_primitive(body, part, i)]} for i, part in enumerate(parts)]
+    names = [part.name for part in parts if part.picture is not None]
+    document = {
+        "asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": list(range(len(parts)))}],
+        "nodes": [{"mesh": i, "name": part.name} for i, part in enumerate(parts)], "meshes": meshes,
+        "materials": [_material(part, names) for part in parts], "extensionsUsed": ["KHR_materials_unlit"],
+        "accessors": body.accessors, "bufferViews": body.views, "buffers": [{"byteLength": len(body.data)}],
+    }  # fmt: skip
+    if images:
+        document["images"] = images
+        document["samplers"] = [{"magFilter": 9729, "minFilter": 9987, "wrapS": 33071, "wrapT": 33071}]
+        document["textures"] = [{"source": i, "sampler": 0} for i in range(len(images))]
+    return _file(json.dumps(document, separators=(",", ":")).encode(), bytes(body.data))
+
+
+def _primitive(body: _Body, part: Part, material: int) -> dict[str, Any]:
+    low, high = part.vertices.min(axis=0).tolist(), part.vertices.max(axis=0).tolist()
+    paint = np.ones((len(part.colours), 4), np.float32)
+    paint[:, : part.colours.shape[1]] = np.clip(part.colours, 0.0, 1.0)
+    attributes = {
+        "POSITION": body.accessor(
+            part.vertices.astype(np.float32), "VEC3", _FLOAT, _VERTICES, min=low, max=high
+        ),
+        "COLOR_0": body.accessor(
+            np.rint(65535.0 * paint).astype(np.uint16), "VEC4", _USHORT, _VERTICES, normalized=True
+        ),
+    }
+    if part.places is not None:
+        attributes["TEXCOORD_0"] = body.accessor(part.places.astype(np.float32), "VEC2", _FLOAT, _VERTICES)
+    indices = body.accessor(part.faces.astype(np.uint32), "SCALAR", _UINT, _INDICES)
+    return {"attributes": attributes, "indices": indices, "material": material}
+
+
+def _material(part: Part, with_picture: list[str]) -> dict[str, Any]:
+    surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
+    if part.picture is not None:
+        surface["baseColorTexture"] = {"index": with_picture.index(part.name)}
+    material = {"name": part.name, "pbrMetallicRoughness": surface, "extensions": {"KHR_materials_unlit": {}}}
+    return {**material, "alphaMode": "BLEND", "doubleSided": True} if part.clear else material
+
+
+def _file(text: bytes, data: bytes) -> bytes:
+    text += b" " * (-len(text) % 4)
+    data += b"\0" * (-len(data) % 4)
+    total = 12 + 8 + len(text) + 8 + len(data)
+    head = struct.pack("<4sII", b"glTF", 2, total) + struct.pack("<I4s", len(text), b"JSON")
+    return head + text + struct.pack("<I4s", len(data), b"BIN\0") + data

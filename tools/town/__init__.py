@@ -1,0 +1,1 @@
+"""Tool: what tools/make_town.py builds the drawn town of."""
