@@ -3,10 +3,13 @@
 # make demo     recordings/ and assets/ anew   make lock    requirements.txt anew
 BIN := .venv/bin
 
-.PHONY: run setup test chromium bench soak demo lock
+.PHONY: run mover setup test chromium bench soak demo lock
 
 run: setup
 	@$(BIN)/stridescope walk
+
+mover: setup
+	@$(BIN)/stridescope mover
 
 setup:
 	@tools/setup.sh
@@ -29,6 +32,7 @@ soak: setup
 demo: setup
 	$(BIN)/python tools/make_recordings.py
 	$(BIN)/python tools/make_shoe.py
+	$(BIN)/python tools/make_town.py
 
 # requirements.txt is all; requirements-run.txt the part of it that the program needs without its tests
 LOCK := $(BIN)/uv pip compile --quiet --universal --generate-hashes --no-emit-index-url \

@@ -17,6 +17,7 @@ from app.commands import (
     forward,
     gestures,
     info,
+    mover,
     process,
     record,
     recover,
@@ -28,6 +29,7 @@ from app.motion import InputError
 
 COMMANDS = {
     "walk": walk,
+    "mover": mover,
     "record": record,
     "recover": recover,
     "info": info,

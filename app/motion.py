@@ -467,6 +467,11 @@ class CheckFirst:
     do: str
 
 
+@dataclass(frozen=True)
+class MoverCommand:
+    """What a person asks of the town mode; ``visit.py`` has the kinds."""
+
+
 ReplayCommand = Pause | Step | Speed | Seek | Loop
 Command = (
     SessionCommand
@@ -480,6 +485,7 @@ Command = (
     | Rename
     | Calibrate
     | CheckFirst
+    | MoverCommand
 )
 
 

@@ -9,12 +9,9 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import os
 import signal
-import sys
 import threading
 import time
-import webbrowser
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
@@ -33,6 +30,7 @@ from app.door.front import Door
 from app.estimator import sweep as gains
 from app.formats.journal import Start
 from app.health import report
+from app.launch import open_in_browser
 from app.librarian import Librarian
 from app.measures import measures
 from app.outputs.recorder import Recorder
@@ -488,11 +486,3 @@ def reestimated(job: Reestimation) -> Track:
 def replace_command(order: m.Order, command: m.Command) -> m.Order:
     """The same person's order, as another command."""
     return order._replace(command=command)
-
-
-def open_in_browser(address: str) -> None:
-    """Open the page where there is a desktop; elsewhere the printed address is enough."""
-    desktop = sys.platform == "darwin" or any(os.environ.get(name) for name in ("DISPLAY", "WAYLAND_DISPLAY"))
-    if desktop:
-        with contextlib.suppress(webbrowser.Error):
-            webbrowser.open(address)

@@ -13,7 +13,9 @@ from app.estimator.smoother import smooth
 from app.estimator.strides import Contact, lift_above_line, stride_to
 from app.estimator.sweep import sweep
 from app.estimator.tracker import Tracker
-from app.motion import ROW_WIDTH, SAMPLE_WIDTH
+from app.gestures.default import DefaultDecoder
+from app.gestures.words import FootReading
+from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Role
 from app.rotation import from_yaw, rotate, yaw_of
 from app.settings import BUILT_IN, Settings
 from app.trail import TrailBuilder, coarser
@@ -82,3 +84,18 @@ def warm_up(estimator: str = "papers", tell: Callable[[str], None] = lambda what
     for what, compile_it in parts(estimator):
         tell(what)
         compile_it()
+
+
+def warm_attitude() -> None:
+    """Compile what the papers' decoder needs besides: an orientation."""
+    Tracker(Settings()).advance(still_samples())
+
+
+def warm_gestures() -> None:
+    """Compile what two feet in the town need."""
+    decoder = DefaultDecoder()
+    for k in range(4):
+        for foot in (Role.LEFT, Role.RIGHT):
+            decoder.take(FootReading(foot, k * 10_000_000, (0.0, 0.0, -9.81), (0.0, 0.0, 0.0)))
+    decoder.watch(1_000_000_000)
+    yaw_of(from_yaw(0.1))

@@ -25,12 +25,16 @@ HEART = {
     "settings",
     "rotation",
     "world",
+    "visit",
+    "hearing",
+    "visiting",
 }
 HEART |= {"calibration", "estimator", "gestures", "simulate", "formats", "studies"}
 EDGES = {"sources", "outputs", "scene", "door", "profiles", "compiled", "compressed", "workers", "measures"}
-EDGES |= {"opinions", "calibrations"}
+EDGES |= {"opinions", "calibrations", "visitors", "launch"}
 SHELL = {
     "run",
+    "mover",
     "batch",
     "record",
     "library",

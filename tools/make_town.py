@@ -6,7 +6,6 @@ Run ``python tools/make_town.py`` after a change of app/world.py or of tools/tow
 from __future__ import annotations
 
 import io
-import sys
 import time
 from pathlib import Path
 
@@ -39,18 +38,25 @@ def main() -> None:
     np.savez_compressed(ASSET, **made)  # type: ignore[arg-type]
     triangles = sum(len(made[key]) for key in made if key.endswith(".faces"))
     seconds = time.perf_counter() - began
-    print(f"{ASSET.name}: {triangles} triangles in {len(batches) + 1} meshes, {ASSET.stat().st_size / 1e6:.2f} MB, "
-          f"{seconds:.0f} s")  # fmt: skip
+    size = ASSET.stat().st_size / 1e6
+    print(f"{ASSET.name}: {triangles} triangles in {len(batches) + 1} meshes, {size:.2f} MB, {seconds:.0f} s")
 
 
 def build(town: Town, rng: np.random.Generator) -> tuple[dict[str, Batch], list[Floats]]:
     """Every block a batch, the ground and the outskirts one each; and the crowns that throw shadows."""
-    batches = {"ground": Batch(), "outskirts": Batch(), **{f"block{i}": Batch() for i in range(len(town.blocks))}}
+    batches = {
+        "ground": Batch(),
+        "outskirts": Batch(),
+        **{f"block{i}": Batch() for i in range(len(town.blocks))},
+    }
     streets.ground(batches["ground"], town)
     streets.outskirts(batches["outskirts"], town, rng)
 
     def block_of(north: float, east: float) -> Batch:
-        away = [max(abs(north - 0.5 * (b.south + b.north)), abs(east - 0.5 * (b.west + b.east))) for b in town.blocks]
+        away = [
+            max(abs(north - 0.5 * (b.south + b.north)), abs(east - 0.5 * (b.west + b.east)))
+            for b in town.blocks
+        ]
         return batches[f"block{int(np.argmin(away))}"]
 
     for building in town.buildings:
@@ -61,7 +67,15 @@ def build(town: Town, rng: np.random.Generator) -> tuple[dict[str, Batch], list[
     balls: list[Floats] = []
     for place in town.trees:
         square = np.hypot(place.north, place.east) < 16.0
-        balls += green.tree(block_of(place.north, place.east), place, rng, 0.12, 0.92 if square else 0.8, 4 if square else 3, 2 if square else 1)
+        balls += green.tree(
+            block_of(place.north, place.east),
+            place,
+            rng,
+            0.12,
+            0.92 if square else 0.8,
+            4 if square else 3,
+            2 if square else 1,
+        )
     for place in green.around_town(town, rng):
         balls += green.tree(batches["outskirts"], place, rng, 0.0, float(rng.uniform(1.6, 2.6)), 2)
     for place in town.lamps:
@@ -118,7 +132,9 @@ def occluders(town: Town) -> Floats:
     rows.append((w, s, 0.0, e, n, top))
     for k in range(5):
         rows.append((w + 0.5 * k, s + 0.5 * k, top, e - 0.5 * k, n - 0.5 * k, top + 1.0 + 1.4 * k))
-    for box in (*town.benches, *town.planters):
+    for box in town.benches:
+        rows.append((box.west, box.south, box.height_m - 0.06, box.east, box.north, box.height_m))
+    for box in town.planters:
         rows.append((box.west, box.south, 0.1, box.east, box.north, box.height_m))
     for place in (*town.trees, *town.lamps):
         r = 0.5 * place.radius_m
@@ -197,4 +213,4 @@ def jpeg(pixels: NDArray[np.uint8], quality: int) -> NDArray[np.uint8]:
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

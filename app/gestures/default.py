@@ -57,7 +57,7 @@ class DefaultDecoder:
     """Two feet in, decisions out. ``now`` is the latest."""
 
     def __init__(self, settings: DefaultSettings | None = None) -> None:
-        values = settings or DefaultSettings()
+        self.settings = values = settings or DefaultSettings()
         self._tuning = np.array([tuple(getattr(values, name) for name in s.TUNING.names or ())], s.TUNING)
         self._feet = np.zeros(2, s.FOOT)
         for name in ("on_s", "previous_on_s", "end_s", "fault_s"):
@@ -91,6 +91,17 @@ class DefaultDecoder:
         """The foot's sensor is gone; its next sample brings it back."""
         self._feet[0 if foot is Role.LEFT else 1]["seen"] = 0.0
         return self.watch(now_ns)
+
+    def tune(self, settings: DefaultSettings) -> None:
+        """Other thresholds from now on."""
+        self.settings = settings
+        for name in s.TUNING.names or ():
+            self._tuning[name] = getattr(settings, name)
+
+    def foot(self, which: int) -> s.Record:
+        """The record of foot 0 (left) or 1 (right), to look at."""
+        foot: s.Record = self._feet[which]
+        return foot
 
     def _seconds(self, t_ns: int) -> float:
         if self._start_ns is None:

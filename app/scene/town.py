@@ -26,7 +26,9 @@ def parts() -> dict[str, Part]:
     """All meshes by name, in *n*: north, east, down from the middle of the square, m."""
     with np.load(ASSET) as made:
         names = dict.fromkeys(key.partition(".")[0] for key in made)
-        return {name: _part(name, {key: made[f"{name}.{key}"] for key in _keys(made, name)}) for name in names}
+        return {
+            name: _part(name, {key: made[f"{name}.{key}"] for key in _keys(made, name)}) for name in names
+        }
 
 
 def haze() -> tuple[int, int, int]:

@@ -8,7 +8,7 @@ accelerations are closed forms of one another. No decoder's code is used.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -29,7 +29,7 @@ from app.simulate.gestures_actions import (
     twist,
 )
 from app.simulate.gestures_options import GESTURES, Bar, GestureOptions, bars_of, parse, spec_of
-from app.simulate.gestures_steps import Steps, sum_of
+from app.simulate.gestures_steps import Course, Steps, sum_of
 from app.simulate.sensors import TABLE_II_NOISE, SensorErrors, ideal_readings, read
 from app.simulate.walk import sample_times_ns
 
@@ -37,7 +37,7 @@ FEET = ("left", "right")
 _GRAVITY = 9.80665
 _MOST_SAMPLES = 20_000_000
 #: What each foot does in each motion: left, right.
-_PARTS: Mapping[MotionId, tuple[str, str]] = {
+PARTS: Mapping[MotionId, tuple[str, str]] = {
     MotionId.FORWARD: ("march", "march"),
     MotionId.FORWARD_RIGHT: ("march", "twist"),
     MotionId.FORWARD_LEFT: ("twist", "march"),
@@ -70,23 +70,28 @@ class GestureFoot:
 
     def at(self, t_s: Floats) -> Motion:
         """The motion at these seconds [n]; position is from the foot's own start."""
-        forward, right, up, yaw, pitch, roll = (steps.at(t_s) for steps in self.channels.values())
-        c, s = math.cos(self.heading_rad), math.sin(self.heading_rad)
-        place, velocity, acceleration = (
-            np.column_stack([c * f - s * r, s * f + c * r, -u])
-            for f, r, u in zip(forward, right, up, strict=True)
-        )
-        sr, cr = np.sin(roll.value), np.cos(roll.value)
-        sp, cp = np.sin(pitch.value), np.cos(pitch.value)
-        rate = np.column_stack(
-            [
-                roll.rate - yaw.rate * sp,
-                pitch.rate * cr + yaw.rate * cp * sr,
-                -pitch.rate * sr + yaw.rate * cp * cr,
-            ]
-        )
-        q = _orientation(self.heading_rad + yaw.value, pitch.value, roll.value)
-        return Motion(place, velocity, acceleration, q, rate)
+        return motion_of([steps.at(t_s) for steps in self.channels.values()], self.heading_rad)
+
+
+def motion_of(courses: Sequence[Course], heading_rad: float) -> Motion:
+    """The motion of a foot from its six channels at n instants; its toe rests at this heading."""
+    forward, right, up, yaw, pitch, roll = courses
+    c, s = math.cos(heading_rad), math.sin(heading_rad)
+    place, velocity, acceleration = (
+        np.column_stack([c * f - s * r, s * f + c * r, -u])
+        for f, r, u in zip(forward, right, up, strict=True)
+    )
+    sr, cr = np.sin(roll.value), np.cos(roll.value)
+    sp, cp = np.sin(pitch.value), np.cos(pitch.value)
+    rate = np.column_stack(
+        [
+            roll.rate - yaw.rate * sp,
+            pitch.rate * cr + yaw.rate * cp * sr,
+            -pitch.rate * sr + yaw.rate * cp * cr,
+        ]
+    )
+    q = _orientation(heading_rad + yaw.value, pitch.value, roll.value)
+    return Motion(place, velocity, acceleration, q, rate)
 
 
 @dataclass(frozen=True)
@@ -186,7 +191,7 @@ class Performer:
         cycle = draw(0.92, 1.08) / o.cadence_hz
         size = o.amplitude * draw(0.85, 1.15)
         share = draw(0.42, 0.56)
-        feet = [FEET[i] for i in (0, 1) if _PARTS[motion][i]]
+        feet = [FEET[i] for i in (0, 1) if PARTS[motion][i]]
         if len(feet) == 2 and self.rng.random() < 0.5:
             feet.reverse()
         between = 0.5 * cycle * (1.0 + 0.3 * o.asymmetry * draw(-1.0, 1.0))
@@ -197,9 +202,9 @@ class Performer:
                 t += cycle * draw(0.05, 0.25)
             foot = feet[len(starts) % len(feet)]
             duration = share * cycle * draw(0.95, 1.05)
-            part = _PARTS[motion][FEET.index(foot)]
+            part = PARTS[motion][FEET.index(foot)]
             self.actions[foot].append(self._action(part, foot, t, duration, size * draw(0.75, 1.25)))
-            self.actions[_other(foot)].append(
+            self.actions[other_foot(foot)].append(
                 give(t, duration, o.transient * min(1.0, 0.5 + 0.5 * size), draw)
             )
             starts.append(t)
@@ -211,14 +216,8 @@ class Performer:
         self.bouts.append(Bout(motion, starts[0], self.moved_s, mean, len(starts) / len(feet), after_rest))
 
     def _action(self, part: str, foot: str, t_s: float, duration_s: float, size: float) -> Action:
-        out = 1.0 if foot == "right" else -1.0
-        amplitude, hard = size * self.size[foot], self.options.transient
-        if part == "twist":
-            return twist(t_s, duration_s, amplitude, out, self.draw, hard)
-        if part == "back":
-            return step_back(t_s, duration_s, amplitude, self.draw, hard)
-        aside = out * amplitude * self.draw(0.03, 0.2) if part == "aside" else 0.0
-        return march(t_s, duration_s, amplitude, aside, self.draw, hard)
+        amplitude = size * self.size[foot]
+        return action_of(part, foot, t_s, duration_s, amplitude, self.draw, self.options.transient)
 
     def _pastime(self, what: str, end_s: float) -> None:
         """Taps of one foot, or the body's weight going to and fro."""
@@ -237,7 +236,21 @@ class Performer:
             t = self.moved_s + draw(0.05, 0.6)
 
 
-def _other(foot: str) -> str:
+def action_of(
+    part: str, foot: str, t_s: float, duration_s: float, amplitude: float, draw: Draw, hard: float
+) -> Action:
+    """One action of a foot: its part in a gesture (``PARTS``)."""
+    out = 1.0 if foot == "right" else -1.0
+    if part == "twist":
+        return twist(t_s, duration_s, amplitude, out, draw, hard)
+    if part == "back":
+        return step_back(t_s, duration_s, amplitude, draw, hard)
+    aside = out * amplitude * draw(0.03, 0.2) if part == "aside" else 0.0
+    return march(t_s, duration_s, amplitude, aside, draw, hard)
+
+
+def other_foot(foot: str) -> str:
+    """Left for right, right for left."""
     return FEET[1 - FEET.index(foot)]
 
 

@@ -49,8 +49,8 @@ class Batch:
     count: int = 0
 
     def quad(
-        self, corners: Sequence[Point], colour: Rgb | Sequence[Rgb], out_m: float = 0.05, own_light: bool = False,
-        normal: Point | None = None,
+        self, corners: Sequence[Point], colour: Rgb | Sequence[Rgb], out_m: float = 0.05,
+        own_light: bool = False, normal: Point | None = None,
     ) -> None:  # fmt: skip
         """Four corners; one colour or one each. Light is taken ``out_m`` in front of the face."""
         at = np.array(corners, dtype=np.float64)
@@ -73,7 +73,9 @@ class Batch:
         if floor:
             self.quad([(a, e, c), (d, e, c), (d, b, c), (a, b, c)], colour)
 
-    def mesh(self, shape: trimesh.Trimesh, colour: Rgb | Floats, soft: bool = True, out_m: float = 0.1) -> None:
+    def mesh(
+        self, shape: trimesh.Trimesh, colour: Rgb | Floats, soft: bool = True, out_m: float = 0.1
+    ) -> None:
         """Any mesh: soft shares vertices and their normals, hard has flat faces."""
         if not soft:
             shape = trimesh.Trimesh(

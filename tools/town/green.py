@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import trimesh
 
@@ -10,7 +12,8 @@ from tools.town.batch import Batch, Floats, Rgb, linear, mix, times
 from tools.town.houses import GLASS_HIGH, GLASS_LOW, STONE, sides
 
 LEAVES = [linear(c) for c in ("#6f9a45", "#7fa64b", "#5f8c48", "#8fae52", "#6a9550")]
-BARK, IRON, LIGHT = linear("#6b5140"), linear("#3d4448"), linear("#fff1c9")
+BARK, IRON, LIGHT, EARTH = (linear(c) for c in ("#6b5140", "#3d4448", "#fff1c9", "#5c4636"))
+OVERHEAD_M = 2.1
 FLOWERS = [linear(c) for c in ("#d9534f", "#f0c04a", "#e58fb0", "#f4efe6", "#8d6fc0")]
 
 
@@ -30,6 +33,7 @@ def tree(
         turn, away = 2.2 * i + float(rng.uniform(0, 1)), (0.0 if i == 0 else size * 1.05)
         r = size * float(rng.uniform(1.45, 1.85)) * (1.0 if i == 0 else 0.78)
         z = ground_m + tall * (0.72 if i == 0 else 0.60) + size * float(rng.uniform(-0.2, 0.3))
+        z = max(z, ground_m + OVERHEAD_M + r)  # nobody's face in the leaves
         balls.append(np.array([x + away * np.cos(turn), y + away * np.sin(turn), z, r]))
         crown(batch, balls[-1], ink, rng, fine)
     return balls
@@ -56,7 +60,9 @@ def lamp(batch: Batch, place: Place) -> None:
     for a, b in ((-0.13, 0.13),):
         corners = [(x + a, y + a), (x + b, y + a), (x + b, y + b), (x + a, y + b)]
         for (px, py), (qx, qy) in zip(corners, corners[1:] + corners[:1], strict=True):
-            batch.quad([(px, py, 3.76), (qx, qy, 3.76), (qx, qy, 4.16), (px, py, 4.16)], LIGHT, own_light=True)
+            batch.quad(
+                [(px, py, 3.76), (qx, qy, 3.76), (qx, qy, 4.16), (px, py, 4.16)], LIGHT, own_light=True
+            )
     hat = trimesh.creation.cone(radius=0.26, height=0.3, sections=8)
     hat.apply_translation([x, y, 4.16])
     batch.mesh(hat, IRON, soft=False)
@@ -88,7 +94,7 @@ def planter(batch: Batch, box: Box, rng: np.random.Generator) -> None:
     s, w, n, e, high = box
     batch.box((w, s, 0.12), (e, n, high), STONE, top=times(STONE, 1.1))
     batch.quad([(w + 0.25, s + 0.25, high + 0.01), (e - 0.25, s + 0.25, high + 0.01),
-                (e - 0.25, n - 0.25, high + 0.01), (w + 0.25, n - 0.25, high + 0.01)], linear("#5c4636"))  # fmt: skip
+                (e - 0.25, n - 0.25, high + 0.01), (w + 0.25, n - 0.25, high + 0.01)], EARTH)  # fmt: skip
     for _ in range(26):
         x, y = float(rng.uniform(w + 0.5, e - 0.5)), float(rng.uniform(s + 0.5, n - 0.5))
         r = float(rng.uniform(0.16, 0.3))
@@ -105,7 +111,7 @@ def tower(batch: Batch, box: Box) -> None:
     for side in sides(box).values():
         long = side.length_m
         rows = [0.12, 2.6, 5.2, 7.6, 10.2, 12.6, high - 3.4]
-        for low, top in zip(rows, rows[1:], strict=False):
+        for low, top in itertools.pairwise(rows):
             for k in range(2):
                 side.panel(batch, k * long / 2, low, (k + 1) * long / 2, top, cream)
         clock(batch, side.at(long / 2, 12.9, 0.06), side.right, side.out)
@@ -124,10 +130,12 @@ def tower(batch: Batch, box: Box) -> None:
         side.panel(batch, 0.8, high - 3.2, long - 0.8, high - 0.5, linear("#4a4f57"), -0.5, 0.6)
         side.ledge(batch, -0.3, high, long + 0.3, high + 0.35, 0.3, times(cream, 1.1))
         f = side.at
-        batch.quad([f(-0.2, high + 0.35, 0.2), f(long + 0.2, high + 0.35, 0.2), f(long - 1.3, high + 2.4, -1.3),
-                    f(1.3, high + 2.4, -1.3)], [times(copper, 0.9)] * 2 + [copper] * 2)  # fmt: skip
-        batch.quad([f(1.3, high + 2.4, -1.3), f(long - 1.3, high + 2.4, -1.3), f(long / 2, high + 7.0, -long / 2),
-                    f(long / 2, high + 7.0, -long / 2)], copper)  # fmt: skip
+        eaves, middle = high + 0.35, high + 2.4
+        foot = [f(-0.2, eaves, 0.2), f(long + 0.2, eaves, 0.2)]
+        waist = [f(long - 1.3, middle, -1.3), f(1.3, middle, -1.3)]
+        tip = f(long / 2, high + 7.0, -long / 2)
+        batch.quad([*foot, *waist], [times(copper, 0.9)] * 2 + [copper] * 2)
+        batch.quad([waist[1], waist[0], tip, tip], copper)
     ball = trimesh.creation.icosphere(subdivisions=1, radius=0.3)
     ball.apply_translation([0.5 * (w + e), 0.5 * (s + n), high + 7.1])
     batch.mesh(ball, linear("#e8c34d"))
@@ -140,7 +148,7 @@ def clock(batch: Batch, centre: tuple[float, float, float], right: tuple[float, 
 
     def fan(radius: float, front: float, ink: Rgb) -> None:
         turn = np.linspace(0.0, 2.0 * np.pi, 33)
-        for a, b in zip(turn, turn[1:], strict=False):
+        for a, b in itertools.pairwise(turn):
             tri = [c + front * o, c + front * o + radius * (np.cos(a) * r + np.sin(a) * up),
                    c + front * o + radius * (np.cos(b) * r + np.sin(b) * up)]  # fmt: skip
             corners = [tuple(p.tolist()) for p in (*tri, tri[2])]
@@ -149,7 +157,7 @@ def clock(batch: Batch, centre: tuple[float, float, float], right: tuple[float, 
     def hand(angle: float, inner: float, outer: float, wide: float, front: float) -> None:
         way, across = np.sin(angle) * r + np.cos(angle) * up, np.cos(angle) * r - np.sin(angle) * up
         points = [c + front * o + d * way + w * across for d, w in
-                  ((inner, wide), (inner, -wide), (outer, -wide), (outer, wide))]  # fmt: skip
+                  ((inner, -wide), (inner, wide), (outer, wide), (outer, -wide))]  # fmt: skip
         batch.quad([tuple(p.tolist()) for p in points], IRON, normal=tuple(out))  # type: ignore[arg-type]
 
     fan(1.35, 0.0, linear("#8a6a3a"))
@@ -162,7 +170,7 @@ def clock(batch: Batch, centre: tuple[float, float, float], right: tuple[float, 
 
 def around_town(town: Town, rng: np.random.Generator) -> list[Place]:
     """Trees on the meadows beyond the edge, thicker near it."""
-    places = []
+    places: list[Place] = []
     while len(places) < 170:
         north, east = rng.uniform(-1.0, 1.0, 2) * (town.half_m + 150.0)
         away = max(abs(north), abs(east)) - town.half_m

@@ -11,8 +11,12 @@ from tools.town.batch import Batch, Point, Rgb, linear, mix, times
 
 STOREY_M = 3.2
 WALLS = [linear(c) for c in
-         ("#f0dfc0", "#e3b78f", "#d99a86", "#c9d3c0", "#e9c777", "#b9cbd9", "#f3ece0", "#c47f63")]  # fmt: skip
-TRIMS = [linear(c) for c in ("#fbf6ec", "#f7efe2", "#f6e9df", "#fafaf4", "#fff6dd", "#fdfdfb", "#e5d9c6", "#f1e4d6")]
+         ("#f0dfc0", "#e3b78f", "#d99a86", "#c9d3c0", "#e9c777", "#b9cbd9", "#f3ece0",
+          "#c47f63")]  # fmt: skip
+TRIMS = [
+    linear(c)
+    for c in ("#fbf6ec", "#f7efe2", "#f6e9df", "#fafaf4", "#fff6dd", "#fdfdfb", "#e5d9c6", "#f1e4d6")
+]
 SHUTTERS = [linear(c) for c in ("#5d7f6b", "#3f6f86", "#8b4b3e", "#50684f", "#6f7d8c", "#7a5a46")]
 DOORS = [linear(c) for c in ("#2f5d50", "#7b3b32", "#2e4a66", "#5a4630", "#8a6a2f", "#3b3f46")]
 AWNINGS = [linear(c) for c in ("#c8503f", "#2f7d74", "#d9a441", "#4a6fa5", "#8a5a83")]
@@ -54,12 +58,20 @@ class Side(NamedTuple):
         f = self.at
         front = [f(left, low, out_m), f(right, low, out_m), f(right, high, out_m), f(left, high, out_m)]
         batch.quad(front, colour)
-        batch.quad([f(left, high, out_m), f(right, high, out_m), f(right, high), f(left, high)], times(colour, 1.06))
-        batch.quad([f(left, low), f(right, low), f(right, low, out_m), f(left, low, out_m)], times(colour, 0.7))
+        batch.quad(
+            [f(left, high, out_m), f(right, high, out_m), f(right, high), f(left, high)], times(colour, 1.06)
+        )
+        batch.quad(
+            [f(left, low), f(right, low), f(right, low, out_m), f(left, low, out_m)], times(colour, 0.7)
+        )
         if not ends:
             return
-        batch.quad([f(left, low), f(left, low, out_m), f(left, high, out_m), f(left, high)], times(colour, 0.9))
-        batch.quad([f(right, low, out_m), f(right, low), f(right, high), f(right, high, out_m)], times(colour, 0.9))
+        batch.quad(
+            [f(left, low), f(left, low, out_m), f(left, high, out_m), f(left, high)], times(colour, 0.9)
+        )
+        batch.quad(
+            [f(right, low, out_m), f(right, low), f(right, high), f(right, high, out_m)], times(colour, 0.9)
+        )
 
     def hollow(
         self, batch: Batch, left: float, low: float, right: float, high: float, deep_m: float, colour: Rgb
@@ -100,7 +112,9 @@ def sides(box: Box) -> dict[str, Side]:
     }
 
 
-def house(batch: Batch, building: Building, fronts: set[str], hidden: set[str], rng: np.random.Generator) -> None:
+def house(
+    batch: Batch, building: Building, fronts: set[str], hidden: set[str], rng: np.random.Generator
+) -> None:
     """One house. ``fronts`` face a street; ``hidden`` touch another house."""
     look = Look(
         WALLS[building.colour], TRIMS[building.colour],
@@ -137,12 +151,16 @@ def facade(
             else:
                 window_bay(batch, side, left, width, low, look, storey < 2 and front, front, rng)
         if front and storey:
-            side.ledge(batch, 0.0, low - 0.09, side.length_m, low + 0.05, 0.05, mix(look.wall, look.trim, 0.6))
+            side.ledge(
+                batch, 0.0, low - 0.09, side.length_m, low + 0.05, 0.05, mix(look.wall, look.trim, 0.6)
+            )
     top = building.storeys * STOREY_M
     side.panel(batch, 0.0, top, side.length_m, building.box.height_m, look.wall)
     if not building.gabled:
         side.ledge(batch, -0.22, top + 0.25, side.length_m + 0.22, top + 0.62, 0.28, look.trim)
-        side.ledge(batch, -0.1, top + 0.02, side.length_m + 0.1, top + 0.25, 0.12, mix(look.wall, look.trim, 0.7))
+        side.ledge(
+            batch, -0.1, top + 0.02, side.length_m + 0.1, top + 0.25, 0.12, mix(look.wall, look.trim, 0.7)
+        )
     if front:
         corner = mix(look.wall, look.trim, 0.75)
         for left in (0.0, side.length_m - 0.42):
@@ -212,7 +230,9 @@ def door_bay(batch: Batch, side: Side, left: float, width: float, look: Look) ->
     for x in (a + 0.2, 0.5 * (a + b) + 0.06):
         for low, high in ((0.35, 1.0), (1.15, 2.05)):
             side.panel(batch, x, low, x + 0.34, high, times(look.door, 1.35), -0.17, 0.25)
-    side.panel(batch, a + 0.09, 2.28, b - 0.09, d - 0.07, [GLASS_LOW, GLASS_LOW, GLASS_HIGH, GLASS_HIGH], -0.18, 0.25)
+    side.panel(
+        batch, a + 0.09, 2.28, b - 0.09, d - 0.07, [GLASS_LOW, GLASS_LOW, GLASS_HIGH, GLASS_HIGH], -0.18, 0.25
+    )
     side.ledge(batch, a - 0.18, d, b + 0.18, d + 0.22, 0.16, look.trim)
     for x in (a - 0.18, b):
         side.ledge(batch, x, 0.0, x + 0.18, d, 0.07, look.trim)
@@ -240,9 +260,15 @@ def shop_bay(
         x, y = a + 0.07 + i * (b - a - 0.07) / panes, a + (i + 1) * (b - a - 0.07) / panes
         side.panel(batch, x, low + 0.1, y, d - 0.08, inside, -0.2, 0.27)
         if not door:
-            thing = [linear(c) for c in ("#d8674f", "#e8b04a", "#6f9f7c", "#f0e3cf", "#7f93b8")][int(rng.integers(5))]
-            side.panel(batch, x + 0.12, low + 0.1, y - 0.12, low + float(rng.uniform(0.35, 0.8)), thing, -0.19, 0.27)
-    side.ledge(batch, left + 0.1, d + 0.1, left + width - 0.1, d + 0.58, 0.07, mix(look.door, look.awning, 0.25))
+            thing = [linear(c) for c in ("#d8674f", "#e8b04a", "#6f9f7c", "#f0e3cf", "#7f93b8")][
+                int(rng.integers(5))
+            ]
+            side.panel(
+                batch, x + 0.12, low + 0.1, y - 0.12, low + float(rng.uniform(0.35, 0.8)), thing, -0.19, 0.27
+            )
+    side.ledge(
+        batch, left + 0.1, d + 0.1, left + width - 0.1, d + 0.58, 0.07, mix(look.door, look.awning, 0.25)
+    )
     if not door:
         awning(batch, side, a - 0.1, b + 0.1, d + 0.12, look.awning)
 
@@ -255,9 +281,19 @@ def awning(batch: Batch, side: Side, left: float, right: float, high: float, col
         a, b = (left + (right - left) * k / stripes for k in (i, i + 1))
         ink = colour if i % 2 == 0 else CREAM
         f = side.at
-        batch.quad([f(a, high - drop, deep), f(b, high - drop, deep), f(b, high, 0.02), f(a, high, 0.02)], ink)
-        batch.quad([f(a, high, 0.0), f(b, high, 0.0), f(b, high - drop, deep), f(a, high - drop, deep)], times(ink, 0.6))
-        skirt = [f(a, high - drop - 0.17, deep), f(b, high - drop - 0.17, deep), f(b, high - drop, deep), f(a, high - drop, deep)]
+        batch.quad(
+            [f(a, high - drop, deep), f(b, high - drop, deep), f(b, high, 0.02), f(a, high, 0.02)], ink
+        )
+        batch.quad(
+            [f(a, high, 0.0), f(b, high, 0.0), f(b, high - drop, deep), f(a, high - drop, deep)],
+            times(ink, 0.6),
+        )
+        skirt = [
+            f(a, high - drop - 0.17, deep),
+            f(b, high - drop - 0.17, deep),
+            f(b, high - drop, deep),
+            f(a, high - drop, deep),
+        ]
         batch.quad(skirt, times(ink, 0.95))
 
 
@@ -274,7 +310,9 @@ def roof(batch: Batch, building: Building, look: Look, rng: np.random.Generator)
         batch.box((w + 2.0, s + 2.0, top), (w + 5.0, s + 4.5, top + 2.2), times(look.wall, 0.9))
     for _ in range(2):
         x, y = float(rng.uniform(w + 1.5, e - 2.5)), float(rng.uniform(s + 1.5, n - 2.5))
-        batch.box((x, y, top), (x + 0.8, y + 0.6, top + (3.4 if not building.gabled else 4.6)), linear("#a5705a"))
+        batch.box(
+            (x, y, top), (x + 0.8, y + 0.6, top + (3.4 if not building.gabled else 4.6)), linear("#a5705a")
+        )
 
 
 def gable(batch: Batch, building: Building, look: Look, rng: np.random.Generator) -> None:
@@ -317,7 +355,12 @@ def tiled(batch: Batch, corners: list[Point], ink: Rgb) -> None:
 
 
 def mansard(
-    batch: Batch, edges: tuple[float, float, float, float], top: float, ink: Rgb, look: Look, rng: np.random.Generator
+    batch: Batch,
+    edges: tuple[float, float, float, float],
+    top: float,
+    ink: Rgb,
+    look: Look,
+    rng: np.random.Generator,
 ) -> None:
     """Steep slate sides with dormers and a flat top."""
     s, w, n, e = edges
@@ -333,9 +376,23 @@ def mansard(
             f = side.at
             side.panel(batch, a, base, b, head, look.trim, -0.1, 0.2)
             side.panel(batch, a + 0.12, base + 0.12, b - 0.12, head - 0.1, glass(rng), -0.08, 0.2)
-            batch.quad([f(a - 0.1, head, 0.0), f(b + 0.1, head, 0.0), f(b + 0.1, head + 0.25, -1.0), f(a - 0.1, head + 0.25, -1.0)], times(ink, 0.9))
-            batch.quad([f(b, base, -0.1), f(b, base, -0.5), f(b, head, -1.0), f(b, head, -0.1)], times(look.trim, 0.85))
-            batch.quad([f(a, base, -0.5), f(a, base, -0.1), f(a, head, -0.1), f(a, head, -1.0)], times(look.trim, 0.85))
+            batch.quad(
+                [
+                    f(a - 0.1, head, 0.0),
+                    f(b + 0.1, head, 0.0),
+                    f(b + 0.1, head + 0.25, -1.0),
+                    f(a - 0.1, head + 0.25, -1.0),
+                ],
+                times(ink, 0.9),
+            )
+            batch.quad(
+                [f(b, base, -0.1), f(b, base, -0.5), f(b, head, -1.0), f(b, head, -0.1)],
+                times(look.trim, 0.85),
+            )
+            batch.quad(
+                [f(a, base, -0.5), f(a, base, -0.1), f(a, head, -0.1), f(a, head, -1.0)],
+                times(look.trim, 0.85),
+            )
     x, y, z = inset, inset, top + rise
     batch.quad([(w + x, s + y, z), (e - x, s + y, z), (e - x, n - y, z), (w + x, n - y, z)], times(ink, 0.9))
 

@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from app.compiled import kernel
 from tools.town.batch import Floats
 
+Integers = NDArray[np.int64]
 #: From the south-west, a good way up: x east, y north, z up.
 SUN = np.array([-0.50, -0.56, 0.66])
 SUN /= np.linalg.norm(SUN)
@@ -18,7 +19,15 @@ GROUND_LIGHT = np.array([0.30, 0.26, 0.21])
 
 @kernel
 def blocked(
-    px: float, py: float, pz: float, dx: float, dy: float, dz: float, boxes: Floats, balls: Floats, reach: float
+    px: float,
+    py: float,
+    pz: float,
+    dx: float,
+    dy: float,
+    dz: float,
+    boxes: Floats,
+    balls: Floats,
+    reach: float,
 ) -> float:
     """How much of a ray gets through: 0 behind a wall, a little through leaves, 1 in the open."""
     for i in range(boxes.shape[0]):
@@ -60,13 +69,16 @@ def blocked(
 
 @kernel
 def light_at(
-    places: Floats, normals: Floats, suns: Floats, skies: Floats, boxes: Floats, balls: Floats, cell_of: NDArray[np.int64],
-    box_lists: NDArray[np.int64], ball_lists: NDArray[np.int64], own: Floats, out: Floats,
+    places: Floats, normals: Floats, suns: Floats, skies: Floats, boxes: Floats, balls: Floats,
+    cell_of: Integers, box_lists: Integers, ball_lists: Integers, out: Floats,
 ) -> None:  # fmt: skip
     """Per place [n, 3]: the share of the sun and of the sky that reaches it → ``out`` [n, 2]."""
     for i in range(places.shape[0]):
         cell = cell_of[i]
-        near_boxes, near_balls = boxes[box_lists[cell, 1 : 1 + box_lists[cell, 0]]], balls[ball_lists[cell, 1 : 1 + ball_lists[cell, 0]]]
+        near_boxes, near_balls = (
+            boxes[box_lists[cell, 1 : 1 + box_lists[cell, 0]]],
+            balls[ball_lists[cell, 1 : 1 + ball_lists[cell, 0]]],
+        )
         px, py, pz = places[i]
         nx, ny, nz = normals[i]
         sun = 0.0
@@ -78,7 +90,9 @@ def light_at(
             weight = nx * skies[k, 0] + ny * skies[k, 1] + nz * skies[k, 2]
             if weight > 0.0:
                 total += weight
-                sky += weight * blocked(px, py, pz, skies[k, 0], skies[k, 1], skies[k, 2], near_boxes, near_balls, 22.0)
+                sky += weight * blocked(
+                    px, py, pz, skies[k, 0], skies[k, 1], skies[k, 2], near_boxes, near_balls, 22.0
+                )
         out[i, 0] = sun / suns.shape[0]
         out[i, 1] = sky / max(total, 1e-9)
 
@@ -93,7 +107,7 @@ class Sun:
         low, high = balls[:, :2] - balls[:, 3:], balls[:, :2] + balls[:, 3:]
         self._ball_lists = self._lists(low, high, balls[:, 2] + balls[:, 3])
 
-    def _lists(self, low: Floats, high: Floats, top: Floats) -> NDArray[np.int64]:
+    def _lists(self, low: Floats, high: Floats, top: Floats) -> Integers:
         """Per cell, what may throw a shadow into it or hide a piece of its sky."""
         size = 2 * self._half / self._count
         rows = []
@@ -113,9 +127,10 @@ class Sun:
         size = 2 * self._half / self._count
         cell = np.clip((places[:, :2] + self._half) / size, 0, self._count - 1).astype(np.int64)
         out = np.zeros((len(places), 2))
-        light_at(np.ascontiguousarray(places), np.ascontiguousarray(normals), disc(suns), dome(skies), self._boxes,
-                 self._balls, cell[:, 1] * self._count + cell[:, 0], self._box_lists, self._ball_lists,
-                 np.zeros(1), out)  # fmt: skip
+        places, normals = np.ascontiguousarray(places), np.ascontiguousarray(normals)
+        cells = cell[:, 1] * self._count + cell[:, 0]
+        light_at(places, normals, disc(suns), dome(skies), self._boxes, self._balls, cells, self._box_lists,
+                 self._ball_lists, out)  # fmt: skip
         return out
 
     def colour(self, places: Floats, normals: Floats, suns: int = 6, skies: int = 40) -> Floats:

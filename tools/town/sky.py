@@ -17,11 +17,13 @@ LOWEST_RAD, RADIUS_M = -0.12, 600.0
 
 
 def picture(rng: np.random.Generator) -> NDArray[np.uint8]:
-    """[HEIGHT, WIDTH, 3]: the row is the height above the horizon (top row the zenith), the column the azimuth."""
+    """[HEIGHT, WIDTH, 3]: rows from the zenith down to below the horizon, columns by azimuth."""
     turn = np.linspace(0.0, 2 * np.pi, WIDTH, endpoint=False)[None, :]
     high = np.linspace(0.5 * np.pi, LOWEST_RAD, HEIGHT)[:, None]
     up = np.clip(np.sin(high), 0.0, 1.0)
-    way = np.stack(np.broadcast_arrays(np.cos(high) * np.sin(turn), np.cos(high) * np.cos(turn), np.sin(high)), -1)
+    way = np.stack(
+        np.broadcast_arrays(np.cos(high) * np.sin(turn), np.cos(high) * np.cos(turn), np.sin(high)), -1
+    )
     part = np.clip(up / 0.45, 0, 1)[..., None] ** 0.62
     deep = np.clip((up - 0.3) / 0.7, 0, 1)[..., None]
     colour = HAZE + (_BLUE - HAZE) * part
@@ -37,10 +39,13 @@ def clouds(colour: Floats, way: Floats, up: Floats, toward: Floats, rng: np.rand
     """Fair-weather clouds on a plane high above, lit from the sun's side."""
     x, y = (way[..., i] / (up + 0.14) for i in (0, 1))
     field, shift = (
-        sum(fog(rng_of, x + d * SUN[0], y + d * SUN[1], 0.55 * 2**k) / 1.9**k for k, rng_of in enumerate(seeds(rng)))
+        sum(
+            fog(rng_of, x + d * SUN[0], y + d * SUN[1], 0.55 * 2**k) / 1.9**k
+            for k, rng_of in enumerate(seeds(rng))
+        )
         for d in (0.0, 0.22)
     )
-    cover = np.clip((np.asarray(field) - 0.62) / 0.42, 0, 1)
+    cover = np.clip((np.asarray(field) - 0.28) / 0.5, 0, 1)
     cover = cover * cover * (3 - 2 * cover) * np.clip((up - 0.035) / 0.12, 0, 1)
     shade = np.clip(0.5 + 1.5 * (np.asarray(field) - np.asarray(shift)), 0, 1)[..., None]
     white = np.array([206.0, 214.0, 226.0]) * (1 - shade) + np.array([255.0, 252.0, 246.0]) * shade

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 import trimesh
 
@@ -10,7 +12,7 @@ from tools.town.batch import Batch, Rgb, linear, mix, times
 
 ASPHALT, LINE, KERB = linear("#63666c"), linear("#e9e7df"), linear("#c9c4ba")
 PAVING, PAVING_TWO, YARD = linear("#b9b1a4"), linear("#aaa296"), linear("#a09684")
-SQUARE = [linear(c) for c in ("#cfc2ab", "#bfae93", "#d8cdb9", "#b8a58a")]
+SQUARE = [linear(c) for c in ("#cdbfa6", "#b59f80", "#ddd2bd", "#a8967c")]
 GRASS, FIELD = linear("#86a35c"), linear("#9db070")
 PAVEMENT_UP_M = 0.12
 REACH_M = 520.0  # meadows reach so far
@@ -105,7 +107,7 @@ def square(batch: Batch, s: float, w: float, n: float, e: float) -> None:
     flat(batch, s + 0.28, w + 0.28, n - 0.28, e - 0.28, up, SQUARE[0])
     radii = [3.9, 6.2, 9.4, 11.0, 15.2, 18.4]
     count = 96
-    for i, (inner, outer) in enumerate(zip(radii, radii[1:], strict=False)):
+    for i, (inner, outer) in enumerate(itertools.pairwise(radii)):
         for k in range(count):
             a, b = 2 * np.pi * k / count, 2 * np.pi * (k + 1) / count
             ink = SQUARE[(i % 2) * 2 + (1 if (k // 4) % 2 else 0)] if i % 2 == 0 else SQUARE[1]

@@ -1,0 +1,292 @@
+"""Shell: the town mode: feet in, the town on a page, a wall of pages, packets out; on one loop.
+
+`visiting` does the thinking; this file opens, wires, starts and stops.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import contextlib
+import logging
+import signal
+import threading
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+from app import motion as m
+from app import visitors
+from app.clocks import Clock, LiveClock
+from app.door.access import Access
+from app.door.front import Door
+from app.gestures.packet import packet_of
+from app.gestures.steering import Comfort
+from app.gestures.words import standing
+from app.launch import open_in_browser
+from app.outputs.senders import AxesSender, Outlet, PacketSender
+from app.scene.mover_page import MoverScene
+from app.simulate.gestures_options import GestureOptions, parse
+from app.sources.opening import open_source
+from app.sources.source import Source
+from app.sources.spec import parse_spec
+from app.visit import LoadVisitor, SaveVisitor, Visit
+from app.visiting import Visiting
+from app.warm import warm_attitude, warm_gestures
+from app.world import make_town
+
+log = logging.getLogger(__name__)
+
+FRAME_S = 1 / 60
+MESSAGE_S = 6.0
+#: The walk that OSC calls 1.
+FULL_MPS = 2.0
+DEFAULT_SOURCE = "sim:gestures"
+SIDES = {"left": m.Role.LEFT, "right": m.Role.RIGHT}
+TILES = {(3, 1): ("left", "centre", "right"), (2, 1): ("left", "right")}
+
+
+@dataclass(frozen=True)
+class Options:
+    """What the command line says."""
+
+    source: str | None
+    left: str | None
+    right: str | None
+    decoder: str
+    udp: str | None
+    osc: str | None
+    access: Access
+    open_browser: bool
+    kiosk: bool
+    wall: tuple[int, int] | None
+
+
+def move(options: Options, tell: Callable[[str], None]) -> None:
+    """Serve the town until Ctrl-C. ``tell`` prints a line. Bad input is ``InputError``."""
+    with contextlib.ExitStack() as closing:
+        mover = Mover(options, closing)
+        asyncio.run(mover.serve(tell))
+
+
+class Feed:
+    """One source, and whose samples it brings: of one foot where a side is given, else by their names."""
+
+    def __init__(self, source: Source, side: str | None) -> None:
+        self.source, self.side = source, side
+
+    def named(self, sample: m.Sample) -> m.Sample:
+        """The sample under its side's name."""
+        return sample if self.side is None else sample._replace(sensor=self.side)
+
+
+def live_options(options: Options) -> GestureOptions | None:
+    """Simulated feet that are steered, where no script is given; None for any other source."""
+    if options.left or options.right:
+        return None
+    spec = parse_spec(options.source or DEFAULT_SOURCE)
+    if (spec.kind, spec.target) != ("sim", "gestures") or "script" in spec.options:
+        return None
+    return parse(spec.options)
+
+
+def open_feeds(options: Options) -> list[Feed]:
+    """The sensors' sources; none where the feet are steered."""
+    if live_options(options) is not None:
+        return []
+    if options.left or options.right:
+        if options.source or not (options.left and options.right):
+            raise m.InputError("expected --source alone, or both --left and --right")
+        return [Feed(open_source(spec, changes=False), side) for side, spec in
+                (("left", options.left), ("right", options.right))]  # fmt: skip
+    return [Feed(open_source(options.source or DEFAULT_SOURCE, changes=False), None)]
+
+
+def addresses(address: str, options: Options) -> list[str]:
+    """What else can be opened: full windows, a wall's tiles, the operator's page."""
+    joined = address + ("&" if "?" in address else "/?")
+    lines = [f"  without the panel   {joined}kiosk=1"]
+    if options.kiosk:
+        lines = [f"  operator's page     {joined}operator=1"]
+    if options.wall is not None:
+        columns, rows = options.wall
+        names = TILES.get(options.wall) or [f"{c},{r}" for r in range(rows) for c in range(columns)]
+        lines += [f"  wall, {name:<13} {joined}tile={name}&fixedDpr=1" for name in names]
+    return lines
+
+
+async def prepared(work: Callable[[], None]) -> None:
+    """Run it in a thread that does not hold up Ctrl-C."""
+    loop = asyncio.get_running_loop()
+    done = asyncio.Event()
+
+    def run() -> None:
+        try:
+            work()
+        finally:
+            with contextlib.suppress(RuntimeError):  # the program has ended meanwhile
+                loop.call_soon_threadsafe(done.set)
+
+    threading.Thread(target=run, name="prepare", daemon=True).start()
+    await done.wait()
+
+
+class Mover:
+    """One town being walked."""
+
+    def __init__(self, options: Options, closing: contextlib.ExitStack) -> None:
+        self._options, self._closing = options, closing
+        self._feeds = open_feeds(options)
+        for feed in self._feeds:
+            closing.callback(feed.source.close)
+        self._visiting = Visiting(
+            make_town(), role_of=self._role, clock_of=self._clock, name=self._name(), decoder=options.decoder,
+            simulated=live_options(options),
+        )  # fmt: skip
+        self._senders = self._open_senders()
+        self._orders: asyncio.Queue[m.Order] = asyncio.Queue()
+        self._stop = asyncio.Event()
+        self._message_until = 0.0
+        self._visit: Visit | None = None
+
+    async def serve(self, tell: Callable[[str], None]) -> None:
+        """Open the page, then everything else."""
+        loop = asyncio.get_running_loop()
+        for number in (signal.SIGINT, signal.SIGTERM):
+            loop.add_signal_handler(number, self._stop.set)
+
+        def submit(order: m.Order) -> None:
+            with contextlib.suppress(RuntimeError):  # the loop has ended
+                loop.call_soon_threadsafe(self._orders.put_nowait, order)
+
+        scene = MoverScene(
+            submit, self._visiting.town, wall=self._options.wall or (3, 1), kiosk=self._options.kiosk
+        )
+        self._closing.callback(scene.close)
+        door = Door(
+            self._options.access, viser_port=scene.port, rules=scene.rules, health=self._health,
+            extra_head=scene.head,
+        )  # fmt: skip
+        self._closing.callback(door.stop)
+        door.start()
+        for line in [*door.greeting(), *addresses(door.address, self._options)]:
+            tell(line)
+        if self._options.open_browser:
+            open_in_browser(door.address)
+        running = asyncio.create_task(self._run(scene), name="run")
+        stop = asyncio.create_task(self._stop.wait(), name="stop")
+        await asyncio.wait((running, stop), return_when=asyncio.FIRST_COMPLETED)
+        stop.cancel()
+        if not running.done():
+            running.cancel()
+            await asyncio.wait((running,), timeout=1.0)
+        elif not running.cancelled():
+            running.result()  # a fault of ours: let it be seen
+
+    async def _run(self, scene: MoverScene) -> None:
+        """Everything at once, until cancelled. A source that ends is silent from then on."""
+        scene.draw(self._visiting.still(time.monotonic_ns(), "Preparing the feet (slow only the first time)"))
+        await prepared(warm_gestures)
+        attitude = asyncio.create_task(prepared(warm_attitude))  # for whoever chooses the papers' decoder
+        if self._options.decoder == "papers":
+            await attitude
+        self._visiting.visitors = visitors.names()
+        async with asyncio.TaskGroup() as tasks:
+            tasks.create_task(self._draw(scene))
+            tasks.create_task(self._obey())
+            for feed in self._feeds:
+                tasks.create_task(self._acquire(feed))
+
+    # --- in ---------------------------------------------------------------------------------------
+
+    async def _acquire(self, feed: Feed) -> None:
+        async for item in feed.source:
+            if isinstance(item, m.RestartHere):
+                self._visiting.begin_anew()
+            elif isinstance(item, m.Sample):
+                self._visiting.take(feed.named(item))
+
+    async def _obey(self) -> None:
+        while True:
+            order = await self._orders.get()
+            try:
+                self._take(order)
+            except m.InputError as error:
+                self._say(str(error))
+
+    def _take(self, order: m.Order) -> None:
+        match order.command:
+            case SaveVisitor(name):
+                visitors.save(name, self._visiting.kept())
+                self._visiting.visitors = visitors.names()
+                self._say(f"visitor {name} saved")
+            case LoadVisitor(name):
+                self._visiting.use(visitors.load(name))
+                self._say(f"visitor {name}: thresholds as before")
+            case m.MoverCommand() as command:
+                self._visiting.obey(command, time.monotonic_ns())
+
+    def _role(self, sensor: str) -> m.Role:
+        if sensor in SIDES:
+            return SIDES[sensor]
+        told = (feed.source.info.sensors.get(sensor) for feed in self._feeds)
+        return next((role for role in told if role is not None), m.role_of(sensor))
+
+    def _clock(self, sensor: str) -> Clock:
+        """Arrivals tell every clock, a replay's too: its samples are released at their own pace."""
+        return LiveClock()
+
+    def _name(self) -> str:
+        return " and ".join(feed.source.info.name for feed in self._feeds) or "simulated feet"
+
+    # --- out --------------------------------------------------------------------------------------
+
+    async def _draw(self, scene: MoverScene) -> None:
+        """Sixty pictures a second. A fault in drawing is logged and never ends the visit."""
+        due = time.monotonic()
+        while True:
+            try:
+                now_ns = time.monotonic_ns()
+                if self._message_until and now_ns * 1e-9 > self._message_until:
+                    self._say("")
+                self._visit = visit = self._visiting.step(now_ns)
+                scene.draw(visit)
+                self._send(now_ns * 1e-9)
+            except Exception:
+                log.exception("drawing failed")
+                await asyncio.sleep(1.0)
+            due = max(due + FRAME_S, time.monotonic() - FRAME_S)
+            await asyncio.sleep(max(0.001, due - time.monotonic()))
+
+    def _send(self, now_s: float) -> None:
+        packets, axes = self._senders
+        if packets is not None:
+            packets.tell(packet_of(self._visiting.decision), now_s)
+        if axes is not None:
+            walker, most = self._visiting.walker, Comfort()
+            axes.tell(
+                walker.ahead_mps / FULL_MPS,
+                walker.right_mps / FULL_MPS,
+                walker.turn_radps / most.most_radps,
+                now_s,
+            )
+
+    def _open_senders(self) -> tuple[PacketSender | None, AxesSender | None]:
+        packets = axes = None
+        if self._options.udp:
+            packets = PacketSender(Outlet(self._options.udp, "--udp"), packet_of(standing(0, "")))
+            self._closing.callback(packets.close)
+        if self._options.osc:
+            axes = AxesSender(Outlet(self._options.osc, "--osc"))
+            self._closing.callback(axes.close)
+        return packets, axes
+
+    def _say(self, message: str) -> None:
+        self._visiting.message = message
+        self._message_until = time.monotonic() + MESSAGE_S if message else 0.0
+
+    def _health(self) -> dict[str, object]:
+        """For /healthz; read on the door's thread, so only what is one read."""
+        visit = self._visit
+        if visit is None:
+            return {"link": "starting"}
+        return {"link": visit.fault or "live", "motion": visit.motion.name.lower(), "found": visit.score}

@@ -1,0 +1,146 @@
+// The town mode's camera: held still, wide as the window or a tile of a wall; keys to the server.
+const mover = MOVER_TOLD;
+(() => {
+  const asked = new URLSearchParams(location.search);
+  const [columns, rows] = mover.wall;
+  mover.tile = tileOf(asked.get("tile"));
+  mover.bare = mover.tile !== null || asked.has("kiosk") || (mover.kiosk && !asked.has("operator"));
+  if (mover.bare) document.documentElement.classList.add("mover-bare");
+  if (mover.tile) document.documentElement.classList.add("mover-tile");
+
+  function tileOf(text) {
+    if (text === null) return null;
+    const names = { left: 0, centre: Math.floor((columns - 1) / 2), center: Math.floor((columns - 1) / 2), right: columns - 1 };
+    const [column, row] = text in names ? [names[text], 0] : text.split(",").map(Number);
+    const fits = Number.isInteger(column) && column >= 0 && column < columns && Number.isInteger(row ?? 0) && (row ?? 0) >= 0 && (row ?? 0) < rows;
+    return fits ? { column, row: row ?? 0, columns, rows } : null;
+  }
+
+  // The whole picture in pixels, and where this window lies in it.
+  mover.frame = () => {
+    const canvas = viewer()?.canvas;
+    const box = canvas ? canvas.getBoundingClientRect() : { left: 0, top: 0, width: innerWidth, height: innerHeight };
+    const t = mover.tile ?? { column: 0, row: 0, columns: 1, rows: 1 };
+    const w = Math.round(box.width), h = Math.round(box.height);
+    return { left: box.left, top: box.top, w, h, W: w * t.columns, H: h * t.rows, x: w * t.column, y: h * t.row };
+  };
+  const viewer = () => window.__viserMutable;
+
+  // Off-axis: every tile looks from the same eye through its own part of one window.
+  function hold() {
+    const v = viewer(), camera = v?.camera;
+    if (!camera) return;
+    const f = mover.frame();
+    if (!f.w || !f.h) return;
+    const aspect = f.W / f.H, most = (2 * Math.atan(Math.tan((52 * Math.PI) / 180) / aspect) * 180) / Math.PI;
+    const fov = Math.min(mover.fov, most), view = camera.view;
+    const same = camera.manual && camera.fov === fov && camera.aspect === aspect && view && view.enabled &&
+      view.fullWidth === f.W && view.fullHeight === f.H && view.offsetX === f.x && view.offsetY === f.y &&
+      view.width === f.w && view.height === f.h;
+    if (same) return;
+    camera.manual = true;
+    camera.fov = fov;
+    camera.aspect = aspect;
+    camera.setViewOffset(f.W, f.H, f.x, f.y, f.w, f.h);
+    v.requestRender?.();
+  }
+
+  // Colours are shown as they are; the sky lies behind all fog.
+  function finish() {
+    const nodes = viewer()?.nodeRefFromName;
+    for (const name of ["/world/town", "/world/sky", "/world/goal"]) {
+      nodes?.[name]?.traverse((thing) => {
+        const material = thing.material;
+        if (!material || material.userData.mover) return;
+        material.userData.mover = true;
+        material.toneMapped = false;
+        if (name === "/world/sky") {
+          material.fog = material.depthWrite = false;
+          thing.renderOrder = -1;
+          thing.frustumCulled = false;
+        }
+        if (name === "/world/goal") {
+          material.depthWrite = false;
+          material.fog = false;
+        }
+        if (material.map) {
+          material.map.anisotropy = 8;
+          material.map.needsUpdate = true;
+        }
+        material.needsUpdate = true;
+        viewer().requestRender?.();
+      });
+    }
+  }
+  function again() {
+    hold();
+    requestAnimationFrame(again);
+  }
+  requestAnimationFrame(again);
+  setInterval(finish, 250);
+
+  // --- keys ---
+  const typing = (target) =>
+    target instanceof HTMLElement &&
+    (target.isContentEditable || /^(input|textarea|select)$/i.test(target.tagName)) &&
+    !/^(checkbox|radio|range|button)$/i.test(target.type || "");
+  const arrows = { ArrowUp: "f", ArrowDown: "b", ArrowLeft: "l", ArrowRight: "r" };
+  const held = new Set();
+  let number = 0, said = "";
+  const send = (message) => viewer()?.sendMessage?.(message);
+  function steer() {
+    const keys = [...held].join("");
+    if (keys === "" && said === "") return;
+    said = keys;
+    send({ type: "GuiUpdateMessage", uuid: mover.keys, updates: { value: `${keys} ${number++ % 1000}` } });
+  }
+  setInterval(() => held.size && steer(), 100); // the server lets go of keys that it does not hear of
+  const letGo = () => {
+    held.clear();
+    steer();
+  };
+  window.addEventListener("blur", letGo);
+  window.addEventListener("keydown", (event) => {
+    if (typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+    if (/^(Arrow|[wasdqeWASDQE]$)/.test(event.key)) event.stopImmediatePropagation(); // viser's own camera keys
+    if (arrows[event.key]) {
+      event.preventDefault();
+      held.add(arrows[event.key]);
+      if (event.shiftKey) held.add("s");
+      if (!event.repeat) steer();
+      return;
+    }
+    if (event.repeat) return;
+    const key = event.key.toLowerCase();
+    if (key === "f") {
+      const full = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
+      full.catch(() => {});
+    }
+    if (key === "h") document.documentElement.classList.toggle("mover-quiet");
+    if (key === " ") {
+      event.preventDefault();
+      if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+    }
+    if (mover.presses[key]) send(mover.presses[key]);
+  }, true);
+  window.addEventListener("keyup", (event) => {
+    if (event.key === "Shift") held.delete("s");
+    if (!arrows[event.key]) return;
+    event.stopImmediatePropagation();
+    held.delete(arrows[event.key]);
+    if (![...held].some((key) => key !== "s")) held.clear();
+    steer();
+  }, true);
+
+  // Nobody turns the camera with the mouse: a click on the town only takes the hand off the panel.
+  for (const kind of ["pointerdown", "mousedown", "touchstart", "wheel", "dblclick", "contextmenu"]) {
+    window.addEventListener(kind, (event) => {
+      if (!(event.target instanceof HTMLCanvasElement) || !event.target.dataset.engine) return;
+      event.stopImmediatePropagation();
+      if (kind === "wheel" || kind === "contextmenu") event.preventDefault();
+      if (document.activeElement instanceof HTMLElement) document.activeElement.blur();
+    }, { capture: true, passive: false });
+  }
+  // viser retries a lost connection only while the document has the focus; a wall has none.
+  document.hasFocus = () => true;
+})();

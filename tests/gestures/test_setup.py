@@ -1,0 +1,77 @@
+"""The guided set-up, done by simulated visitors: lively and timid ones, with swapped feet, with trembling."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+from app.gestures.default import DefaultDecoder, DefaultSettings
+from app.gestures.merge import readings
+from app.gestures.setup import STEPS, Fitted, SetUpGuide
+from app.gestures.words import FootReading
+from app.motion import Role
+from app.simulate.gestures import make_gestures
+
+SCRIPT = "none:3.2,forward:5,turn_ccw:4,turn_cw:4,side_right:4,none:6"
+_OTHER = {Role.LEFT: Role.RIGHT, Role.RIGHT: Role.LEFT}
+
+
+def performed(script: str = SCRIPT, **options: object) -> list[FootReading]:
+    made = make_gestures({"script": script, **{k: str(v) for k, v in options.items()}})
+    return list(readings({samples.role: samples for samples in made.recording.sensors}))
+
+
+def guided(all_: list[FootReading], swapped: bool = False) -> SetUpGuide:
+    guide = SetUpGuide(DefaultSettings())
+    for reading in all_:
+        guide.take(reading._replace(foot=_OTHER[reading.foot]) if swapped else reading)
+    return guide
+
+
+def fitted(guide: SetUpGuide) -> Fitted:
+    assert guide.fitted is not None, guide.task
+    return guide.fitted
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_twenty_seconds_are_enough(seed: int) -> None:
+    assert sum(step.seconds for step in STEPS) == 20.0
+    result = fitted(guided(performed(seed=seed)))
+    assert not result.swapped
+    assert "Left is left" in result.words
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_swapped_feet_are_seen(seed: int) -> None:
+    result = fitted(guided(performed(seed=seed), swapped=True))
+    assert result.swapped
+    assert "swapped" in result.words
+
+
+def test_a_timid_visitor_gets_lower_thresholds_that_hear_them() -> None:
+    timid = fitted(guided(performed(amplitude=0.4, seed=2))).settings
+    lively = fitted(guided(performed(amplitude=1.3, seed=2))).settings
+    assert timid.on_radps < lively.on_radps
+    assert timid.sure_rad < lively.sure_rad
+    decoder = DefaultDecoder(timid)
+    heard = [d for r in performed("none:2,forward:6", amplitude=0.4, seed=9) if (d := decoder.take(r))]
+    assert any(d.motion.name == "FORWARD" and d.certain for d in heard)
+
+
+def test_who_does_nothing_is_asked_again_and_nothing_is_set() -> None:
+    guide = guided(performed("none:15"))
+    assert guide.fitted is None
+    assert guide.task.title == "March in place"
+    assert "Nothing was heard" in guide.task.note
+
+
+def test_who_does_not_stand_still_is_asked_again() -> None:
+    guide = guided(performed("forward:6"))
+    assert guide.task.title == "Stand still"
+    assert "not still" in guide.task.note
+
+
+def test_rubbish_does_not_end_it() -> None:
+    all_ = performed()
+    broken = all_[100]._replace(angular_rate_b=(np.nan, 0.0, 0.0))
+    assert not fitted(guided([*all_[:100], broken, *all_[100:]])).swapped
