@@ -603,6 +603,7 @@ class FootView(NamedTuple):
     footprints: tuple[Footprint, ...]  # the newest few
     error_m: float | None  # distance to the simulator's truth
     trust: Trust | None = None  # None: the estimator does not know
+    true_q_nb: Quaternion | None = None  # the simulator's truth
 
 
 class GuideView(NamedTuple):
@@ -708,6 +709,8 @@ class Snapshot:
     stored_bytes: int
     budget_bytes: int
     epoch: int  # rises when the walk starts again: everything drawn before is void
+    #: Seconds and metres from a simulator's truth, the last ten seconds, by sensor: [k, 2].
+    errors: Mapping[str, Floats] = field(default_factory=dict)
 
 
 class Link(StrEnum):

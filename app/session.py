@@ -20,7 +20,7 @@ from app.rotation import yaw_of
 from app.settings import Settings
 from app.tracks import Reestimation, SensorStore, Track
 from app.trail import TrailBuilder
-from app.truth import TruePlace, TrueWalk
+from app.truth import TruePlace, TrueWalk, errors
 
 #: Applied changes kept for the page.
 CHANGES = 200
@@ -71,6 +71,8 @@ class Session:
         self._jobs = 0
         self._frozen: dict[str, TrailBuilder] = {}  # the trail of samples that are gone
         self._true: dict[str, TrueWalk] = {}
+        self._errors: dict[str, m.Floats] = {}
+        self._errors_at: dict[str, int] = {}  # the row of the newest of them
 
     # --- in ----------------------------------------------------------------------------------------
 
@@ -327,6 +329,7 @@ class Session:
         self._note(m.Change(self.number, order.host_ns, order.who, "restarted here"))
         self.epoch += 1
         self.stores, self._frozen, self._true, self._origin_ns = {}, {}, {}, None
+        self._errors, self._errors_at = {}, {}
         self.wanted, self._next, self.candidate = None, None, None
         self.main = Track(f"main{self.epoch}", self.main.settings)
         if coming is not None:
@@ -368,6 +371,7 @@ class Session:
             main=self.main.view(stores, true),
             candidate=self.candidate.view(stores, true) if self.candidate else None,
             truth={name: walk.trail() for name, walk in self._true.items()},
+            errors=dict(self._errors),
             candidate_settings=self.candidate_settings,
             pending=self.wanted is not None,
             apply_at_once=self._apply_at_once,
@@ -389,11 +393,15 @@ class Session:
         if self._truth is None:
             return {}
         places = {}
-        for sensor, foot in self.main.feet.items():
+        for sensor in self.main.feet:
+            store = self.stores[sensor]
             if sensor not in self._true:
-                self._true[sensor] = TrueWalk(f"truth{self.epoch}.{sensor}", self._truth, sensor)
-            elapsed_s, row = self.stores[sensor].elapsed_s, foot.tracker.rows.end - 1
-            places[sensor] = self._true[sensor].look(row, elapsed_s, self.main.settings)
+                name = f"truth{self.epoch}.{sensor}"
+                self._true[sensor] = TrueWalk(name, self._truth, sensor, store.begin_s)
+            known = places[sensor] = self._true[sensor].look(store, self.main.settings)
+            if self._errors_at.get(sensor) != known.row:
+                self._errors_at[sensor] = known.row
+                self._errors[sensor] = errors(self._true[sensor].recent, self.main.feet[sensor].tracker.rows)
         return places
 
     def _health(self, sensor: str, store: SensorStore, now_s: float) -> m.Health:

@@ -103,6 +103,14 @@ class Settings:
             0.0, 1.0, (0.0, 0.3), 0.005,
         ),
     )  # fmt: skip
+    zero_velocity: bool = _setting(
+        True,
+        Limit(
+            "Zero-velocity update", "", "",
+            "The papers' algorithm: stop each stride's velocity where the foot stands. Off, every error it ever"
+            " made stays, and position runs away.",
+        ),
+    )  # fmt: skip
     magnetometer: bool = _setting(
         False,
         Limit(

@@ -31,7 +31,7 @@ from app.motion import (
 )
 from app.settings import Settings
 from app.trail import TrailBuilder
-from app.truth import TruePlace
+from app.truth import TruePlace, error_m
 
 NO_FIELD = (math.nan, math.nan, math.nan)
 #: m/s², rad/s or µT: no sensor reads that, and its square would spoil every sum (as in formats/clean).
@@ -94,6 +94,11 @@ class SensorStore:
     def _drop(self, reason: str) -> bool:
         self.dropped[reason] = self.dropped.get(reason, 0) + 1
         return False
+
+    @property
+    def begin_s(self) -> float:
+        """The device's own time of the first sample."""
+        return self._first_ns * 1e-9
 
     @property
     def elapsed_s(self) -> float:
@@ -221,13 +226,10 @@ class FootTrack:
             to_start_m=math.hypot(row[0], row[1]),
             trail=self.trail(),
             footprints=self.footprints(),
-            error_m=None if true is None else self._error_m(true),
+            error_m=None if true is None else error_m(true, tracker.rows),
+            true_q_nb=None if true is None else true.q_nb,
             trust=tracker.trust,
         )
-
-    def _error_m(self, true: TruePlace) -> float:
-        block, place = self.tracker.rows.block(true.row)
-        return float(np.linalg.norm(true.position_n - block[place, POSITION]))
 
 
 class Track:

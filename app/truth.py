@@ -2,68 +2,103 @@
 
 from __future__ import annotations
 
-from typing import NamedTuple
+import math
+from collections import deque
+from collections.abc import Iterable
+from typing import NamedTuple, Protocol
 
 import numpy as np
 
-from app.motion import Floats, Trail, Truth
-from app.rotation import from_yaw, rotate, yaw_of
+from app.blocks import Blocks
+from app.motion import POSITION, Floats, Quaternion, Trail, Truth
+from app.rotation import from_yaw, multiply, yaw_of
 from app.settings import Settings
 from app.trail import TrailBuilder
 
 #: The truth is looked at so many times a second, and for so many seconds at once: it costs closed forms.
 TRUTH_HZ = 25.0
 TOGETHER_S = 0.2
+#: Points that are kept for a graph of ten seconds.
+KEPT = 250
 
 
 class TruePlace(NamedTuple):
-    """Where a foot truly was at one of its samples."""
+    """Where a foot truly was, and how it was turned, at one of its samples."""
 
     row: int
-    position_n: Floats  # [3]
+    t_s: float  # since the first sample
+    position_n: Floats  # [3], from where it was at the first sample
+    q_nb: Quaternion
+
+
+class Times(Protocol):
+    """When a sensor's samples were taken: ``tracks.SensorStore``."""
+
+    samples: Blocks
+
+    def time_ns(self, row: int) -> float:
+        """Nanoseconds from the first sample to this one."""
+        ...
+
+    def rate_hz(self) -> float:
+        """Samples a second."""
+        ...
 
 
 class TrueWalk:
-    """One sensor's truth, turned to the start heading that the main track has.
+    """One sensor's truth, from the place and to the heading that the main track starts with.
 
-    The closed form starts at its own heading; without a magnetometer the estimate starts at
+    The closed form has its own start and heading; without a magnetometer the estimate starts at
     ``start_heading_rad``, with one its north lies there.
     """
 
-    def __init__(self, name: str, truth: Truth, sensor: str) -> None:
-        """``name`` makes the keys of its trail's pieces unique."""
-        self._name, self._truth, self._sensor = name, truth, sensor
+    def __init__(self, name: str, truth: Truth, sensor: str, begin_s: float = 0.0) -> None:
+        """``name`` makes the keys of its trail's pieces unique; the first sample came at ``begin_s``."""
+        self._name, self._truth, self._sensor, self._begin_s = name, truth, sensor, begin_s
         self._turned: tuple[float, bool] | None = None
         self._begin(())
 
     def _begin(self, turned: tuple[float, bool] | tuple[()]) -> None:
         self._turned = turned or None
-        self._done = 0  # points looked at
+        self._next = 0  # row to look at
         self._builder = TrailBuilder(f"{self._name}.{turned}")
-        self._newest: TruePlace | None = None
+        self.recent: deque[TruePlace] = deque(maxlen=KEPT)
 
-    def look(self, row: int, elapsed_s: float, settings: Settings) -> TruePlace:
-        """Bring the trail up to the newest sample, number ``row``; the newest true place known."""
+    def look(self, times: Times, settings: Settings) -> TruePlace:
+        """Bring the trail up to the newest sample; the newest true place known."""
         turned = (settings.start_heading_rad, settings.magnetometer)
         if turned != self._turned:
             self._begin(turned)
-        end = int(elapsed_s * TRUTH_HZ) + 1
-        if end - self._done >= TOGETHER_S * TRUTH_HZ or self._newest is None:
-            t_s = np.append(np.arange(self._done, end) / TRUTH_HZ, elapsed_s)
-            position_n = self._positions(t_s, settings)
-            self._builder.add(position_n[:-1])
-            self._newest = TruePlace(row, position_n[-1])
-            self._done = end
-        return self._newest
+        apart = max(1, round(times.rate_hz() / TRUTH_HZ))
+        if times.samples.end - self._next > TOGETHER_S * TRUTH_HZ * apart or not self.recent:
+            rows = range(max(self._next, times.samples.start), times.samples.end, apart)
+            self._add(rows, [times.time_ns(row) * 1e-9 for row in rows], settings)
+            self._next = rows[-1] + apart
+        return self.recent[-1]
 
     def trail(self) -> Trail:
         """What was looked at so far."""
         return self._builder.trail(np.empty((0, 3)))
 
-    def _positions(self, t_s: Floats, settings: Settings) -> Floats:
-        position_n, q_nb = self._truth(self._sensor, np.append(0.0, t_s))
+    def _add(self, rows: range, t_s: list[float], settings: Settings) -> None:
+        position_n, q_nb = self._truth(self._sensor, self._begin_s + np.append(0.0, t_s))
         start = 0.0 if settings.magnetometer else yaw_of(tuple(q_nb[0].tolist()))
-        turn = from_yaw(settings.start_heading_rad - start)
-        if turn == (1.0, 0.0, 0.0, 0.0):
-            return position_n[1:]
-        return np.array([rotate(turn, tuple(p)) for p in position_n[1:].tolist()])
+        angle = settings.start_heading_rad - start
+        turn, c, s = from_yaw(angle), math.cos(angle), math.sin(angle)
+        places = (position_n[1:] - position_n[0]) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+        self._builder.add(places)
+        for k in range(max(0, len(rows) - KEPT), len(rows)):
+            q_true = multiply(turn, tuple(q_nb[k + 1].tolist()))
+            self.recent.append(TruePlace(rows[k], t_s[k], places[k], q_true))
+
+
+def errors(recent: Iterable[TruePlace], rows: Blocks) -> Floats:
+    """How far the estimate's ``rows`` [n, 12] are from the truth: seconds and metres, [k, 2]."""
+    found = [(true.t_s, error_m(true, rows)) for true in recent if rows.start <= true.row < rows.end]
+    return np.array(found).reshape(-1, 2)
+
+
+def error_m(true: TruePlace, rows: Blocks) -> float:
+    """How far one of the estimate's rows is from the truth."""
+    block, place = rows.block(true.row)
+    return float(np.linalg.norm(true.position_n - block[place, POSITION]))

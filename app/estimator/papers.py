@@ -92,7 +92,7 @@ def find_edges(state: State, dt_s: float) -> int:
     """
     was, was_contrary = state.phase, state.contrary_s > 0.0
     state.phase, state.contrary_s = gait_phase(
-        was, state.contrary_s, state.statistic, state.threshold_radps, state.min_duration_s, dt_s
+        was, state.contrary_s, state.statistic, state.stance_radps, state.min_duration_s, dt_s
     )
     turned = state.phase != was
     contrary = turned or state.contrary_s > 0.0

@@ -52,6 +52,7 @@ class Parameters:
     gain_stance: float
     gain_swing: float
     threshold_radps: float
+    stance_radps: float  # the same, or below any rate: then no stance and no zero-velocity update
     min_duration_s: float
     magnetometer: float  # 0 or 1
     gravity_mps2: float  # 0: as read at rest
@@ -147,6 +148,7 @@ def set_parameters(state: Record, settings: Settings) -> None:
     state["gain_stance"] = settings.gain_stance
     state["gain_swing"] = settings.gain_swing
     state["threshold_radps"] = settings.threshold_radps
+    state["stance_radps"] = settings.threshold_radps if settings.zero_velocity else -1.0
     state["min_duration_s"] = settings.min_duration_s
     state["magnetometer"] = settings.magnetometer
     state["gravity_mps2"] = 0.0 if settings.gravity_from_rest else settings.gravity_mps2

@@ -12,9 +12,10 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.estimator.strapdown import bias_of_swing, motion_acceleration, trapezoid, without_bias
-from app.estimator.tracker import Tracker
-from app.motion import Floats, Samples, Vector
+from app.estimator.tracker import Tracker, track
+from app.motion import SAMPLE_WIDTH, Floats, Role, Samples, Vector
 from app.rotation import from_yaw_pitch_roll, rotate
+from app.settings import Settings
 from tests.estimator.walks import G, estimate, foot, rows_of, samples_of, still, walk
 
 ZERO: Vector = (0.0, 0.0, 0.0)
@@ -176,3 +177,21 @@ def test_without_back_dated_edges_the_walk_falls_short_by_metres(rate_hz: int) -
         velocity -= velocity[-1] * (t_s[a : b + 1] - t_s[a]) / (t_s[b] - t_s[a])
         total += integral_of(velocity, t_s[a : b + 1])[-1]
     assert truth[0, 0] - total > 1.0
+
+
+def test_without_zero_velocity_updates_a_force_bias_grows_as_half_b_t_squared() -> None:
+    """A foot at rest whose accelerometer slips by b after level was found: the position is ½·b·t²."""
+    bias_mps2, rate_hz, seconds = 0.02, 100, 20
+    count = seconds * rate_hz
+    matrix = np.zeros((count, SAMPLE_WIDTH))
+    matrix[:, 0] = np.arange(count) * 1e9 / rate_hz
+    matrix[:, 3] = -9.80665
+    slipped = matrix[:, 0] > 1e9
+    matrix[slipped, 1] = bias_mps2
+    samples = Samples("foot", Role.FOOT, 0, matrix, np.zeros(count, np.uint16))
+    free = track(samples, Settings(gain_stance=0.0, gain_swing=0.0, zero_velocity=False))
+    held = track(samples, Settings(gain_stance=0.0, gain_swing=0.0))
+    north_m = rows_of(free)[:, 0]
+    since_s = np.maximum(0.0, matrix[:, 0] * 1e-9 - 1.005)  # the bias is there from half a step earlier on
+    assert north_m == pytest.approx(0.5 * bias_mps2 * since_s**2, abs=2e-4)
+    assert np.abs(rows_of(held)[:, :3]).max() == 0.0
