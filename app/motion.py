@@ -211,6 +211,7 @@ class Recording:
     dropped_rows: int = 0
     journal: Journal | None = None  # a recording of ours
     clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # by sensor; none: one clock stamped all
+    rod_m: float | None = None  # the sensor hangs on a pendulum of this length
 
     @property
     def duration_s(self) -> float:
@@ -242,6 +243,7 @@ class SourceInfo:
     line: Mapping[str, int] = field(default_factory=dict)  # what became of a live link's bytes, in words
     clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # a recording's, by sensor
     serials: Mapping[str, str] = field(default_factory=dict)  # serial numbers, by sensor, where known
+    rod_m: float | None = None  # the sensor hangs on a pendulum of this length
 
 
 class InputError(ValueError):
@@ -424,6 +426,27 @@ class Loop:
 
 
 @dataclass(frozen=True)
+class SetErrors:
+    """Give a simulated sensor these errors (``simulate.lab``), from now on."""
+
+    changes: tuple[tuple[str, float], ...]
+
+
+@dataclass(frozen=True)
+class TakeLesson:
+    """The errors and settings of a lesson, by its name."""
+
+    name: str
+
+
+@dataclass(frozen=True)
+class Swing:
+    """Let the pendulum go from this angle."""
+
+    angle_deg: float
+
+
+@dataclass(frozen=True)
 class Record:
     """Begin or end a recording."""
 
@@ -472,7 +495,7 @@ class MoverCommand:
     """What a person asks of the town mode; ``visit.py`` has the kinds."""
 
 
-ReplayCommand = Pause | Step | Speed | Seek | Loop
+ReplayCommand = Pause | Step | Speed | Seek | Loop | SetErrors
 Command = (
     SessionCommand
     | FindGains
@@ -486,6 +509,8 @@ Command = (
     | Calibrate
     | CheckFirst
     | MoverCommand
+    | TakeLesson
+    | Swing
 )
 
 
@@ -709,7 +734,8 @@ class Snapshot:
     stored_bytes: int
     budget_bytes: int
     epoch: int  # rises when the walk starts again: everything drawn before is void
-    #: Seconds and metres from a simulator's truth, the last ten seconds, by sensor: [k, 2].
+    #: The last ten seconds beside a simulator's truth, by sensor: seconds, metres from it, and the pitch
+    #: estimated and true, rad: [k, 4].
     errors: Mapping[str, Floats] = field(default_factory=dict)
 
 
@@ -762,6 +788,7 @@ class Status:
     calibration: CalibrationView | None = None
     preflight: PreflightView | None = None
     shelf: tuple[ShelfFile, ...] = ()
+    errors: Mapping[str, float] | None = None  # of a simulated sensor, by name; None: it is no simulation
 
 
 @dataclass(frozen=True)

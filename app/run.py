@@ -9,6 +9,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
+import math
 import signal
 import threading
 import time
@@ -37,6 +38,7 @@ from app.outputs.recorder import Recorder
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
+from app.simulate import lab as lessons
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.source import Source
@@ -240,7 +242,7 @@ class Viewer:
         ready = loop.create_future()
 
         def tell(what: str) -> None:
-            loop.call_soon_threadsafe(self._say, f"Preparing {what} (slow only the first time)")
+            loop.call_soon_threadsafe(self._say, f"Preparing {what} (slow only the first time)", math.inf)
 
         def work() -> None:
             try:
@@ -278,7 +280,7 @@ class Viewer:
                     profiles.save(name, self._session.main.settings)
                     self._status = replace(self._status, profiles=profiles.names())
                     self._say(f"profile {name} saved")
-                case m.Pause() | m.Step() | m.Speed() | m.Seek() | m.Loop() as command:
+                case m.Pause() | m.Step() | m.Speed() | m.Seek() | m.Loop() | m.SetErrors() as command:
                     self._source.control(command)
                 case m.Record(on):
                     self._record(on)
@@ -290,6 +292,14 @@ class Viewer:
                     self._say(self._before.calibrate(command))
                 case m.CheckFirst() as command:
                     self._before.check(command, {s: store.role for s, store in self._session.stores.items()})
+                case m.TakeLesson(name):
+                    errors, settings = lessons.lesson(name)
+                    self._source.control(errors)
+                    self._apply(replace_command(order, m.ReplaceCandidate(settings, f"lesson {name}")))
+                    self._apply(replace_command(order, m.ApplyCandidate()))
+                case m.Swing(angle_deg):
+                    spec = lessons.pendulum(angle_deg)
+                    self._coming.put_nowait((spec, open_source(spec, stretches=True)))
                 case _:
                     self._apply(order)
         except m.InputError as error:
@@ -460,13 +470,14 @@ class Viewer:
             speed=self._source.speed,
             loop=self._source.loop,
             position_s=self._source.position_s,
+            errors=self._source.errors,
             recording=self._recorder.state if self._recorder else self._status.recording,
             shelf=self._librarian.files,
         )
 
-    def _say(self, message: str) -> None:
+    def _say(self, message: str, seconds: float = MESSAGE_S) -> None:
         self._status = replace(self._status, message=message)
-        self._message_until = time.monotonic() + MESSAGE_S if message else 0.0
+        self._message_until = time.monotonic() + seconds if message else 0.0
 
     def _health(self) -> dict[str, object]:
         """For /healthz; read on the door's thread, so only what is one read."""

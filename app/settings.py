@@ -107,8 +107,8 @@ class Settings:
         True,
         Limit(
             "Zero-velocity update", "", "",
-            "The papers' algorithm: stop each stride's velocity where the foot stands. Off, every error it ever"
-            " made stays, and position runs away.",
+            "The papers' algorithm: stop each stride's velocity where the foot stands. Off, every error it"
+            " ever made stays, and position runs away.",
         ),
     )  # fmt: skip
     magnetometer: bool = _setting(

@@ -16,7 +16,6 @@ from app.clocks import Clock, KnownClock
 from app.estimator.smoother import finish
 from app.estimator.tracker import Checkpoint, Tracker
 from app.motion import (
-    POSITION,
     SAMPLE_WIDTH,
     Footprint,
     FootView,

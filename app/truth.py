@@ -10,8 +10,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from app.blocks import Blocks
-from app.motion import POSITION, Floats, Quaternion, Trail, Truth
-from app.rotation import from_yaw, multiply, yaw_of
+from app.motion import ATTITUDE, POSITION, Floats, Quaternion, Trail, Truth
+from app.rotation import from_yaw, multiply, pitch_of, yaw_of
 from app.settings import Settings
 from app.trail import TrailBuilder
 
@@ -93,12 +93,22 @@ class TrueWalk:
 
 
 def errors(recent: Iterable[TruePlace], rows: Blocks) -> Floats:
-    """How far the estimate's ``rows`` [n, 12] are from the truth: seconds and metres, [k, 2]."""
-    found = [(true.t_s, error_m(true, rows)) for true in recent if rows.start <= true.row < rows.end]
-    return np.array(found).reshape(-1, 2)
+    """Seconds, metres from the truth, pitch of the estimate's ``rows`` [n, 12] and of the truth: [k, 4]."""
+    found = [
+        (true.t_s, error_m(true, rows), pitch_of(_attitude(true, rows)), pitch_of(true.q_nb))
+        for true in recent
+        if rows.start <= true.row < rows.end
+    ]
+    return np.array(found).reshape(-1, 4)
 
 
 def error_m(true: TruePlace, rows: Blocks) -> float:
     """How far one of the estimate's rows is from the truth."""
     block, place = rows.block(true.row)
     return float(np.linalg.norm(true.position_n - block[place, POSITION]))
+
+
+def _attitude(true: TruePlace, rows: Blocks) -> Quaternion:
+    block, place = rows.block(true.row)
+    w, x, y, z = block[place, ATTITUDE].tolist()
+    return (w, x, y, z)

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from viser import uplot
 
 from app.motion import FootView, Graph, Role, Snapshot
-from app.scene.colours import FOOT, SWING, Rgb, css
+from app.scene.colours import FOOT, SWING, TRUTH, Rgb, css
 from app.scene.guard import finite_rows
 
 Floats = NDArray[np.float64]
@@ -22,6 +22,8 @@ POINTS = 200
 SPAN_S = 10.0
 HEIGHT_PX = 138
 THRESHOLD: Rgb = (222, 90, 80)
+#: Which graphs there are.
+WALK, TRUE_WALK, PENDULUM = ("speed", "height"), ("speed", "height", "error"), ("tilt", "tilt error")
 NAMES = {Role.LEFT: "left", Role.RIGHT: "right", Role.FOOT: "", Role.OTHER: "sensor"}
 
 
@@ -47,17 +49,18 @@ class Graphs:
 
     def __init__(self, gui: viser.GuiApi, container: Any) -> None:
         self._gui, self._container = gui, container
-        self._shown: tuple[str, tuple[Role, ...]] | None = None  # estimator, feet
+        self._shown: tuple[str, tuple[str, ...], tuple[Role, ...]] | None = None  # estimator, graphs, feet
         self._plots: list[tuple[viser.GuiUplotHandle, Callable[[Snapshot, Floats], Columns]]] = []
         self._drawn: object = None
 
-    def draw(self, snapshot: Snapshot) -> None:
-        """Bring the graphs up to date; the same snapshot's graphs cost nothing."""
+    def draw(self, snapshot: Snapshot, hanging: bool = False) -> None:
+        """Bring the graphs up to date; the same snapshot's graphs cost nothing. ``hanging``: a pendulum."""
         if snapshot.graphs is self._drawn:
             return
         self._drawn = snapshot.graphs
         feet = [f for f in snapshot.main.feet if f.sensor in snapshot.graphs]
-        shown = (snapshot.main.settings.estimator, tuple(f.role for f in feet))
+        kind = PENDULUM if hanging else TRUE_WALK if snapshot.errors else WALK
+        shown = (snapshot.main.settings.estimator, kind, tuple(f.role for f in feet))
         if shown != self._shown:
             self._make(feet, *shown)
             self._shown = shown
@@ -65,18 +68,43 @@ class Graphs:
         for plot, columns in self._plots:
             plot.data = (t_s, *columns(snapshot, t_s))
 
-    def _make(self, feet: list[FootView], estimator: str, roles: tuple[Role, ...]) -> None:
+    def _make(
+        self, feet: list[FootView], estimator: str, kind: tuple[str, ...], roles: tuple[Role, ...]
+    ) -> None:
         for plot, _ in self._plots:
             plot.remove()
         sensors = [f.sensor for f in feet]
         rate = _rate_plot if estimator == "papers" else _statistic_plot
         columns = _rate_columns if estimator == "papers" else _statistic_columns
         with self._container:
-            self._plots = [
-                (rate(self._gui, roles), partial(columns, sensors)),
-                (_plot(self._gui, "Speed, m/s", roles), partial(_columns, sensors, "speed_mps")),
-                (_plot(self._gui, "Height, m", roles), partial(_columns, sensors, "height_m")),
-            ] if feet else []  # fmt: skip
+            self._plots = [(rate(self._gui, roles), partial(columns, sensors))] if feet else []
+            for name in kind if feet else ():
+                make, values = MORE[name]
+                self._plots.append((make(self._gui, roles), partial(values, sensors)))
+
+
+def _error_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
+    return tuple(_known(snapshot, s, t_s, 1) for s in sensors)
+
+
+def _tilt_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
+    return tuple(np.degrees(_known(snapshot, s, t_s, k)) for s in sensors for k in (2, 3))
+
+
+def _tilt_error_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
+    return tuple(a - b for a, b in _pairs(_tilt_columns(sensors, snapshot, t_s)))
+
+
+def _pairs(columns: Columns) -> list[tuple[Floats, Floats]]:
+    """Estimate and truth, sensor by sensor."""
+    return list(zip(columns[::2], columns[1::2], strict=True))
+
+
+def _known(snapshot: Snapshot, sensor: str, t_s: Floats, column: int) -> Floats:
+    """A column of what is known beside the truth; nothing before it is known."""
+    table = snapshot.errors.get(sensor, np.empty((0, 4)))
+    at, values = finite_rows((table[:, 0], table[:, column]))
+    return np.interp(t_s, at, values) if len(at) else np.zeros_like(t_s)
 
 
 def _columns(sensors: list[str], column: str, snapshot: Snapshot, t_s: Floats) -> Columns:
@@ -134,3 +162,37 @@ def _add(gui: viser.GuiApi, title: str, series: list[uplot.Series]) -> viser.Gui
         scales={"x": {"time": False}, "phase": {"range": (0.0, 1.0)}},
         axes=({"size": 24, "font": font, "space": 60}, {"size": 40, "font": font, "space": 26}),
     )  # fmt: skip
+
+
+def _speed_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    return _plot(gui, "Speed, m/s", roles)
+
+
+def _height_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    return _plot(gui, "Height, m", roles)
+
+
+def _error_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    return _plot(gui, "Error to truth, m", roles)
+
+
+def _tilt_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    """The estimate, and the truth dashed."""
+    hidden = uplot.Series_Points(show=False)
+    truth = uplot.Series(label="truth", stroke=css(TRUTH), width=1.4, dash=(6, 4), points=hidden)
+    return _add(gui, "Angle, ° (dashed truth)", [line for one in _lines(roles) for line in (one, truth)])
+
+
+def _tilt_error_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    return _plot(gui, "Error of the angle, °", roles)
+
+
+Maker = Callable[[viser.GuiApi, Sequence[Role]], viser.GuiUplotHandle]
+#: The graphs beside the detector's.
+MORE: dict[str, tuple[Maker, Callable[[list[str], Snapshot, Floats], Columns]]] = {
+    "speed": (_speed_plot, lambda sensors, *now: _columns(sensors, "speed_mps", *now)),
+    "height": (_height_plot, lambda sensors, *now: _columns(sensors, "height_m", *now)),
+    "error": (_error_plot, _error_columns),
+    "tilt": (_tilt_plot, _tilt_columns),
+    "tilt error": (_tilt_error_plot, _tilt_error_columns),
+}

@@ -13,6 +13,7 @@ from app.scene.follow import Glide, middle
 from app.scene.ground import Ground
 from app.scene.head import head
 from app.scene.panel import Panel
+from app.scene.pendulum import Pendulum, no_feet
 from app.scene.shoe import SENSOR_HEIGHT_M
 from app.scene.walkers import Walkers
 
@@ -45,6 +46,7 @@ class Scene:
         )
         self._ground = Ground(self._server.scene, dark=True)
         self._walkers = Walkers(self._server.scene)
+        self._pendulum: Pendulum | None = None
         self._theme(dark=True)
         self.panel = Panel(self._controls, self._set_view, self._view)
         self.head = head(self.panel.keys(), self.panel.resets())
@@ -53,12 +55,12 @@ class Scene:
     def draw(self, snapshot: Snapshot, status: Status) -> None:
         """Make every browser show this; cheap for what has not changed."""
         now = time.monotonic()
-        self._follow(self._walkers.draw(snapshot), min(now - self._drawn_at, LONGEST_STEP_S))
+        self._follow(self._draw_it(snapshot, status.source.rod_m), min(now - self._drawn_at, LONGEST_STEP_S))
         self._drawn_at = now
         self._server.flush()  # the shoe need not wait for words and graphs
         if now >= self._next_graph:
             self._next_graph = now + GRAPH_S
-            self.panel.show_graphs(snapshot)
+            self.panel.show_graphs(snapshot, hanging=status.source.rod_m is not None)
         if now >= self._next_text:
             self._next_text = now + TEXT_S
             self.panel.show_text(snapshot, status, self._view)
@@ -71,6 +73,17 @@ class Scene:
     def close(self) -> None:
         """Stop viser."""
         private.close_server(self._server)
+
+    def _draw_it(self, snapshot: Snapshot, rod_m: float | None) -> list[Vector]:
+        """A walk, or a pendulum of ``rod_m``; returns what to look at."""
+        if rod_m != (self._pendulum.rod_m if self._pendulum else None):
+            if self._pendulum is not None:
+                self._pendulum.remove()
+            self._pendulum = Pendulum(self._server.scene, rod_m) if rod_m is not None else None
+        if self._pendulum is None:
+            return self._walkers.draw(snapshot)
+        self._walkers.draw(no_feet(snapshot))
+        return [self._pendulum.draw(snapshot)]
 
     def _follow(self, places: list[Vector], elapsed_s: float) -> None:
         if not self._view["follow"] or not places:

@@ -15,6 +15,7 @@ from app.scene.before import BeforeTab
 from app.scene.controls import Ask, Controls, Html, Input
 from app.scene.graphs import Graphs
 from app.scene.hindsight import CandidateBox, GainSearch
+from app.scene.lab import LabTab
 from app.scene.library import Library
 from app.scene.profiles import Profiles
 from app.scene.recording import MARKER, TOGGLE, Recording, banner
@@ -67,6 +68,8 @@ class Panel:
             self._library = Library(controls)
         with tabs.add_tab("Before"):
             self._before = BeforeTab(controls)
+        with tabs.add_tab("Lab"):
+            self._lab = LabTab(controls)
         with tabs.add_tab("View"):
             self._switches = self._view_tab(gui, view)
         self._graphs = _graph_panel(gui)
@@ -113,7 +116,7 @@ class Panel:
 
     def resets(self) -> list[str]:
         """The small reset buttons, for the style sheet."""
-        return [button.id for button in self._tuning.resets]
+        return [button.id for button in (*self._tuning.resets, *self._lab.resets)]
 
     def tuned(self) -> dict[str, Input]:
         """The control of each setting."""
@@ -137,12 +140,13 @@ class Panel:
         self._tuning.show(snapshot)
         self._profiles.show(status)
         self._before.show(status)
+        self._lab.show(status)
         for name, control in self._switches.items():
             control.show(view[name])
 
-    def show_graphs(self, snapshot: Snapshot) -> None:
+    def show_graphs(self, snapshot: Snapshot, hanging: bool) -> None:
         """The last seconds."""
-        self._graphs.draw(snapshot)
+        self._graphs.draw(snapshot, hanging)
 
 
 def _rate(snapshot: Snapshot, status: Status) -> float:

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.motion import Sample, Vector
+from app.motion import InputError, Sample, SetErrors, Vector
 from app.settings import Limit, Settings, Value
 from app.simulate.sensors import STANDARD_GRAVITY, TABLE_II_NOISE
 
@@ -50,7 +50,7 @@ class LabErrors:
         20.0,
         Limit(
             "Accelerometer range", "", "g",
-            "Readings are cut off here; heel strikes reach 5 g, and what is cut off is missing in the stride.",
+            "Readings are cut off here; heel strikes reach 5 g, and what is missing is missed in the stride.",
             1.0, 100.0, (1.5, 20.0), 0.1,
         ),
     )  # fmt: skip
@@ -76,7 +76,9 @@ class LabErrors:
         for f in fields(self):
             value, limit = getattr(self, f.name), f.metadata["limit"]
             if not limit.low <= value <= limit.high:
-                raise ValueError(f"{f.name} = {value!r}: expected {limit.low:g} to {limit.high:g} {limit.unit}")
+                raise ValueError(
+                    f"{f.name} = {value!r}: expected {limit.low:g} to {limit.high:g} {limit.unit}"
+                )
 
     def with_changes(self, changes: Mapping[str, float]) -> LabErrors:
         """These errors with some changed; an unknown name or a bad value raises ``ValueError``."""
@@ -186,3 +188,16 @@ LESSONS = (
         " you walk. Switch the magnetometer off and the heading comes from the gyro alone.",
     ),
 )  # fmt: skip
+
+
+def lesson(name: str) -> tuple[SetErrors, Settings]:
+    """What to give the sensor and the estimator; a name that is none is ``InputError``."""
+    for one in LESSONS:
+        if one.name == name:
+            return SetErrors(tuple((key, getattr(one.errors, key)) for key in LIMITS)), one.settings
+    raise InputError(f"lesson {name!r}: expected one of {', '.join(x.name for x in LESSONS)}")
+
+
+def pendulum(angle_deg: float) -> str:
+    """The SPEC of a pendulum let go from this angle."""
+    return f"sim:pendulum?start_deg={angle_deg:g}"

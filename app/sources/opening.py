@@ -10,8 +10,10 @@ import numpy as np
 from app.motion import InputError, Recording, Truth
 from app.simulate.calibration import make_calibration
 from app.simulate.gestures import make_gestures
+from app.simulate.hanging import make_pendulum
 from app.simulate.walk import make_walk
 from app.sources.files import load
+from app.sources.laboratory import Laboratory
 from app.sources.lsl import LslSource
 from app.sources.phone import PhoneSource
 from app.sources.replay import Replay
@@ -39,10 +41,10 @@ def open_source(
     if spec.kind in LIVE:
         return open_live(spec)
     recording, truth = open_recording(spec)
-    changes = changes and spec.changes
-    return Replay(
-        recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes, truth=truth,
-        stretches=stretches,
+    kind = Laboratory if spec.kind == "sim" else Replay
+    return kind(
+        recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes and spec.changes,
+        truth=truth, stretches=stretches,
     )  # fmt: skip
 
 
@@ -74,8 +76,11 @@ def _simulated(spec: Spec) -> tuple[Recording, Truth | None]:
         return gestures.recording, gestures.truth
     if spec.target == "calibration":
         return make_calibration(spec.options).recording, None
+    if spec.target == "pendulum":
+        hanging = make_pendulum(spec.options)
+        return hanging.recording, hanging.truth
     if spec.target != "walk":
-        raise InputError(f"sim:{spec.target}: expected sim:walk, sim:gestures or sim:calibration")
+        raise InputError(f"sim:{spec.target}: expected sim:walk, sim:gestures, sim:pendulum or sim:calibration")
     walk = make_walk(spec.options)
     return walk.recording, walk.truth
 

@@ -32,6 +32,7 @@ from app.motion import (
     Sample,
     Seek,
     SetApplyAtOnce,
+    SetErrors,
     SourceInfo,
     Speed,
     Step,
@@ -102,6 +103,7 @@ class Replay:
         self.detail = ""
         self.made_by = recording.spec
         self.counters: Mapping[str, Counters] = {}
+        self.errors: Mapping[str, float] | None = None
         self.info = source_info(recording, truth)
         self.speed = _checked_speed(speed)
         self.loop = loop
@@ -161,6 +163,8 @@ class Replay:
                 self._step(samples)
             case Loop(on):
                 self.loop = on
+            case SetErrors():
+                raise InputError("errors can be set for a simulated sensor only, this is a recording")
         self._news.set()
 
     def __aiter__(self) -> AsyncIterator[Item]:
@@ -333,6 +337,7 @@ def source_info(recording: Recording, truth: Truth | None = None) -> SourceInfo:
         duration_s=recording.duration_s,
         truth=truth,
         clocks=recording.clocks,
+        rod_m=recording.rod_m,
     )
 
 

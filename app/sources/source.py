@@ -58,6 +58,10 @@ class Source(Protocol):
         """The SPEC of the simulator behind it, for a recording of it."""
 
     @property
+    def errors(self) -> Mapping[str, float] | None:
+        """What is wrong with a simulated sensor, by name; None: it is no simulation."""
+
+    @property
     def counters(self) -> Mapping[str, Counters]:
         """What became of the bytes, by sensor; nothing for a replay."""
 
@@ -80,6 +84,7 @@ class Live:
     position_s = 0.0
     settings: Settings | None = None
     made_by: str | None = None
+    errors: Mapping[str, float] | None = None
 
     @property
     def counters(self) -> Mapping[str, Counters]:
