@@ -58,13 +58,14 @@ def assert_same(one: Session, other: Session) -> None:
         assert (store.elapsed_s, store.saturated) == (twin.elapsed_s, twin.saturated)
         for a, b in ((store.samples, twin.samples), (store.clocks, twin.clocks)):
             np.testing.assert_array_equal(a.table(a.start, a.end), b.table(b.start, b.end))
+    assert (one.candidate is None) == (other.candidate is None)
     for track, twin_track in ((one.main, other.main), (one.candidate, other.candidate)):
-        assert (track is None) == (twin_track is None)
-        for sensor, foot in track.feet.items() if track and twin_track else ():
-            a, b = foot.tracker, twin_track.feet[sensor].tracker
-            assert a.state.tobytes() == b.state.tobytes()
-            assert a.strides == b.strides
-            rows, twin_rows = (t.rows.table(t.rows.start, t.rows.end) for t in (a, b))
+        for sensor, foot in track.feet.items() if track else ():
+            assert twin_track is not None
+            mine, its = foot.tracker, twin_track.feet[sensor].tracker
+            assert mine.state.tobytes() == its.state.tobytes()
+            assert mine.strides == its.strides
+            rows, twin_rows = (t.rows.table(t.rows.start, t.rows.end) for t in (mine, its))
             assert rows.tobytes() == twin_rows.tobytes()
 
 

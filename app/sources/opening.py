@@ -80,7 +80,9 @@ def _simulated(spec: Spec) -> tuple[Recording, Truth | None]:
         hanging = make_pendulum(spec.options)
         return hanging.recording, hanging.truth
     if spec.target != "walk":
-        raise InputError(f"sim:{spec.target}: expected sim:walk, sim:gestures, sim:pendulum or sim:calibration")
+        raise InputError(
+            f"sim:{spec.target}: expected sim:walk, sim:gestures, sim:pendulum or sim:calibration"
+        )
     walk = make_walk(spec.options)
     return walk.recording, walk.truth
 

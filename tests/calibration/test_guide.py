@@ -200,7 +200,7 @@ def test_coverage_counts_directions() -> None:
 def test_a_correction_undoes_what_the_error_does() -> None:
     true, _ = made(1, skew="0.02")
     values = np.random.default_rng(1).normal(size=(20, 3))
-    correction = Correction(tuple(true.force.null), tuple(map(tuple, true.force.scale)))
+    correction = Correction(tuple(true.force.null), tuple(map(tuple, true.force.scale)))  # type: ignore[arg-type]
     np.testing.assert_allclose(correction.table(true.force.read(values)), values, atol=1e-12)
     one = correction.apply(tuple(true.force.read(values)[0]))
     np.testing.assert_allclose(one, values[0], atol=1e-12)

@@ -15,8 +15,8 @@ import pytest
 import websockets.exceptions
 
 from app.door import listening, upstream
-from app.door.access import Access
-from app.door.gate import Gate, Visitor
+from app.door.access import Access, Visitor
+from app.door.gate import Gate
 from tests.door.conftest import House, eventually, opened
 from tests.door.test_filter import CAMERA
 

@@ -13,7 +13,7 @@ from tests.formats.walks import random_samples, write
 WHOLE = write(random_samples(120), chunk=6)
 
 
-def one_by_one(data: bytes) -> dict[str, list[tuple[int, ...] | bytes]]:
+def one_by_one(data: bytes) -> dict[str, list[tuple[int, int, int, bytes]]]:
     contents = mcap.read(data)
     found: dict[str, list] = {}
     for message in (message for chunk in contents.chunks for message in chunk):
@@ -22,7 +22,7 @@ def one_by_one(data: bytes) -> dict[str, list[tuple[int, ...] | bytes]]:
     return found
 
 
-def by_channel(data: bytes) -> dict[str, list[tuple[int, ...] | bytes]]:
+def by_channel(data: bytes) -> dict[str, list[tuple[int, int, int, bytes]]]:
     contents = gather(data, lambda channel: True)
     found = {}
     for number, channel in contents.channels.items():

@@ -23,7 +23,9 @@ def a_file(chunks: int = 5, per_chunk: int = 4, close: bool = True) -> tuple[byt
         writer.add(channels[i % 2], i, 1000 + i, -i, said[-1])
         if i % per_chunk == per_chunk - 1:
             chunk = writer.chunk()
-            ends.append(len(data) + mcap._chunk_at(chunk, 0).end)
+            found = mcap._chunk_at(chunk, 0)
+            assert found is not None
+            ends.append(len(data) + found.end)
             data += chunk
     return data + (writer.end() if close else b""), said, ends
 

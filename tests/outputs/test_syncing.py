@@ -30,7 +30,7 @@ def test_what_is_written_does_not_wait_and_is_synced_in_the_end() -> None:
 
 def test_a_sync_under_way_tells_how_long_it_takes() -> None:
     gate = threading.Event()
-    syncer = Syncer(1, lambda number: bool(gate.wait(60)))  # type: ignore[arg-type,return-value]
+    syncer = Syncer(1, lambda number: bool(gate.wait(60)))  # type: ignore[arg-type]
     syncer.wrote(b"a")
     seen = [syncer.slow_s]
     while seen[-1] <= seen[0] or seen[-1] == 0.0:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import asyncio
+from dataclasses import asdict
 
 import pytest
 
 from app.motion import InputError, Pause, Sample, Seek, SetErrors, Stretch
-from app.simulate.lab import LESSONS, lesson, pendulum
+from app.simulate.lab import LESSONS, PERFECT, lesson, pendulum
 from app.sources.laboratory import Laboratory
 from app.sources.opening import open_source
 from app.sources.spec import parse_spec
@@ -67,7 +68,7 @@ def test_bad_errors_are_refused_in_one_line() -> None:
     for changes in ((("noise", -1.0),), (("noise", float("nan")),), (("colour", 1.0),)):
         with pytest.raises(InputError, match="expected"):
             source.control(SetErrors(changes))
-    assert source.errors["noise"] == 0.0
+    assert source.errors == asdict(PERFECT)
 
 
 def test_a_recording_has_no_errors_to_set() -> None:

@@ -4,15 +4,14 @@ from itertools import pairwise
 
 import pytest
 
-from app.motion import InputError, Loop, Order, Pause, RestartHere, Sample, Seek, Speed, Step
+from app.motion import InputError, Loop, Pause, RestartHere, Sample, Seek, Speed, Step
 from app.sources.replay import HostClock, Replay
+from app.sources.source import Item
 
 HUNDRED_HZ = ("foot", list(range(0, 2000, 10)))  # 200 samples, 1.99 s
 
 
-async def take(
-    stream: AsyncIterator[Sample | Order | RestartHere], count: int
-) -> list[Sample | Order | RestartHere]:
+async def take(stream: AsyncIterator[Item], count: int) -> list[Item]:
     """The next items; a replay that stalls fails by the test's time limit."""
     return [await anext(stream) for _ in range(count)]
 
@@ -22,7 +21,7 @@ async def everything(replay: Replay) -> list[Sample]:
     return [item for item in items if isinstance(item, Sample)]
 
 
-async def stalls(stream: AsyncIterator[Sample | Order | RestartHere]) -> asyncio.Task:
+async def stalls(stream: AsyncIterator[Item]) -> asyncio.Task:
     """A task that waits for the next item, after every chance to get one."""
     task = asyncio.ensure_future(anext(stream))
     for _ in range(50):
@@ -31,11 +30,11 @@ async def stalls(stream: AsyncIterator[Sample | Order | RestartHere]) -> asyncio
     return task
 
 
-def seqs(items: Sequence[Sample | Order | RestartHere]) -> list[int | str]:
+def seqs(items: Sequence[Item]) -> list[int | str]:
     return [item.seq if isinstance(item, Sample) else "restart" for item in items]
 
 
-def timeless(items: Sequence[Sample | Order | RestartHere]) -> list[Sample]:
+def timeless(items: Sequence[Item]) -> list[Sample]:
     return [item._replace(host_ns=0) for item in items if isinstance(item, Sample)]
 
 
