@@ -39,7 +39,7 @@ def test_the_errors_are_distances_and_end_with_the_newest() -> None:
         session.take(sample)
     snapshot = session.snapshot()
     found = snapshot.errors["foot"]
-    assert found.shape == (KEPT, 2)
+    assert found.shape == (KEPT, 4)
     assert found[-1, 1] == snapshot.main.feet[0].error_m
     assert snapshot.t_s - found[-1, 0] < 0.3
     assert snapshot.t_s - found[0, 0] == pytest.approx(10.0, abs=0.5)
@@ -72,3 +72,13 @@ def test_it_is_turned_with_the_start_heading() -> None:
     walk = TrueWalk("t", made.truth, "foot")
     end = walk.look(session.stores["foot"], Settings(start_heading_rad=math.pi / 2)).position_n
     assert end == pytest.approx([0.0, 20.0, 0.0], abs=0.05)
+
+
+def test_the_pitch_stands_beside_the_true_one() -> None:
+    made = make_walk(OPTIONS)
+    session = Session(Settings(), truth=made.truth)
+    for sample in one_by_one(made.recording.sensors[0]):
+        session.take(sample)
+    _, _, pitch, true = session.snapshot().errors["foot"].T
+    assert np.ptp(true) > 0.5
+    assert pitch == pytest.approx(true, abs=0.02)

@@ -29,11 +29,13 @@ class LabTab:
         self._controls = controls
         self.resets: list[Input] = []  # the small buttons, for the style sheet
         self._told, self._angle_deg, self._errors = controls.html(), USUAL_DEG, dict[str, Input]()
-        self._lessons = controls.choice("", {x.name: self._lesson(x.name) for x in LESSONS})
-        self._notice, self._taken = controls.html(), ""
-        for name in LIMITS:
-            self._add(name)
-        self._perfect = controls.choice("", {"Perfect sensor": lambda: SetErrors(_perfect())})
+        self._sensor = controls.gui.add_folder("Sensor")
+        with self._sensor:
+            controls.choice("", {x.name: self._lesson(x.name) for x in LESSONS})
+            self._notice, self._taken = controls.html(), ""
+            for name in LIMITS:
+                self._add(name)
+            controls.choice("", {"Perfect sensor": lambda: SetErrors(_perfect())})
         with controls.gui.add_folder("Pendulum"):
             look = {"min": -FARTHEST_DEG, "max": FARTHEST_DEG, "step": 1.0, "initial_value": USUAL_DEG}
             rule = GuiRule("number", low=-FARTHEST_DEG, high=FARTHEST_DEG)
@@ -47,15 +49,13 @@ class LabTab:
             )
 
     def show(self, status: Status) -> None:
-        """The errors as they are; greyed where there is no simulation."""
+        """The errors as they are; nothing to set where there is no simulation."""
         errors = status.errors
         self._told.show(ELSEWHERE if errors is None else INTRODUCTION)
-        self._notice.show(notice(self._taken) if errors is not None else "")
-        for name, control in self._errors.items():
-            control.handle.disabled = errors is None
-            control.show(float((errors or {}).get(name, getattr(PERFECT, name))))
-        for buttons in (self._lessons, self._perfect):
-            buttons.handle.disabled = errors is None
+        self._notice.show(notice(self._taken))
+        self._sensor.visible = errors is not None
+        for name, value in (errors or {}).items():
+            self._errors[name].show(value)
         self._angle.show(self._angle_deg)
 
     def _lesson(self, name: str) -> Callable[[], TakeLesson]:
