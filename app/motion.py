@@ -685,6 +685,18 @@ class CalibrationView(NamedTuple):
     damaged: str = ""  # one line: a file that cannot be used
 
 
+class OwnView(NamedTuple):
+    """The walk by the orientation that a sensor computed itself, now."""
+
+    position_n: Vector
+    q_nb: Quaternion  # turned so that its heading is ours where the walk begins
+    trail: Trail
+    distance_m: float
+    to_start_m: float
+    tilt_rad: float  # between its down and ours
+    heading_rad: float  # its heading less ours
+
+
 class TrackView(NamedTuple):
     """One named track, now."""
 
@@ -737,6 +749,7 @@ class Snapshot:
     #: The last ten seconds beside a simulator's truth, by sensor: seconds, metres from it, and the pitch
     #: estimated and true, rad: [k, 4].
     errors: Mapping[str, Floats] = field(default_factory=dict)
+    own: Mapping[str, OwnView] = field(default_factory=dict)  # of sensors that tell their orientation
 
 
 class Link(StrEnum):

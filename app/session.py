@@ -16,6 +16,7 @@ from app.blocks import BLOCK
 from app.clocks import Clock, KnownClock, LiveClock
 from app.graphs import graph_of
 from app.health import Monitor, judge
+from app.own import OwnWalk
 from app.rotation import yaw_of
 from app.settings import Settings
 from app.tracks import Reestimation, SensorStore, Track
@@ -73,6 +74,7 @@ class Session:
         self._true: dict[str, TrueWalk] = {}
         self._errors: dict[str, m.Floats] = {}
         self._errors_at: dict[str, int] = {}  # the row of the newest of them
+        self._own: dict[str, OwnWalk] = {}  # of sensors that tell their orientation
 
     # --- in ----------------------------------------------------------------------------------------
 
@@ -89,8 +91,18 @@ class Session:
         monitor.add(sample, True, self.main.feet[sample.sensor].phase)
         if self.candidate is not None:
             self.candidate.advance(sample.sensor, store.samples)
+        if sample.device_q_nb is not None:
+            self._take_own(sample)
         if store.samples.end % BLOCK == 1:
             self._keep_budget()
+
+    def _take_own(self, sample: m.Sample) -> None:
+        """Walk by the sensor's own orientation, too."""
+        foot, name = self.main.feet[sample.sensor], sample.sensor
+        own = self._own.get(name)
+        if own is None:
+            own = self._own[name] = OwnWalk(f"own{self.epoch}.{name}")
+        own.take(sample, foot.phase, foot.tracker.levelled, foot.q_nb, self.main.settings)
 
     def take_stretch(self, stretch: m.Stretch) -> None:
         """Many samples of a recording: the same to the bit as one by one, at a hundredth of the cost."""
@@ -330,6 +342,7 @@ class Session:
         self.epoch += 1
         self.stores, self._frozen, self._true, self._origin_ns = {}, {}, {}, None
         self._errors, self._errors_at = {}, {}
+        self._own = {}
         self.wanted, self._next, self.candidate = None, None, None
         self.main = Track(f"main{self.epoch}", self.main.settings)
         if coming is not None:
@@ -387,7 +400,13 @@ class Session:
             stored_bytes=self.stored_bytes,
             budget_bytes=self._budget,
             epoch=self.epoch,
+            own=self._look_at_own(),
         )
+
+    def _look_at_own(self) -> dict[str, m.OwnView]:
+        feet, settings = self.main.feet, self.main.settings
+        views = {name: own.view(feet[name].q_nb, settings) for name, own in self._own.items()}
+        return {name: view for name, view in views.items() if view is not None}
 
     def _look_at_truth(self) -> dict[str, TruePlace]:
         if self._truth is None:

@@ -16,10 +16,12 @@ from app.clocks import Clock, KnownClock
 from app.estimator.smoother import finish
 from app.estimator.tracker import Checkpoint, Tracker
 from app.motion import (
+    ATTITUDE,
     SAMPLE_WIDTH,
     Footprint,
     FootView,
     GaitPhase,
+    Quaternion,
     Role,
     RowColumn,
     Rows,
@@ -165,6 +167,13 @@ class FootTrack:
         """Of the newest row."""
         block, place = self.tracker.rows.block(self.tracker.rows.end - 1)
         return GaitPhase.SWING if block[place, RowColumn.PHASE] else GaitPhase.STANCE
+
+    @property
+    def q_nb(self) -> Quaternion:
+        """Of the newest row."""
+        block, place = self.tracker.rows.block(self.tracker.rows.end - 1)
+        w, x, y, z = block[place, ATTITUDE].tolist()
+        return (w, x, y, z)
 
     def settle(self) -> None:
         """Bring the trail up to the swing under way (when somebody looks, not for every sample)."""

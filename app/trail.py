@@ -104,7 +104,7 @@ class TrailBuilder:
         self._taken = 0  # rows
         self._levels: list[list[TrailPiece]] = [[] for _ in TOLERANCES_M]
         self._pieces: tuple[TrailPiece, ...] = ()  # all settled ones, oldest first
-        self._growing = np.empty((PIECE, 2, 3), np.float32)
+        self._growing = np.zeros((PIECE, 2, 3), np.float32)
         self._count = 0
         self._shown: Segments = EMPTY
         self._sleeve = np.zeros((SLEEVE + 1, 3))  # the last corner, and the points after it

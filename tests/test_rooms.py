@@ -15,6 +15,7 @@ HEART = {
     "tracks",
     "trail",
     "truth",
+    "own",
     "graphs",
     "clocks",
     "health",

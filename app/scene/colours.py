@@ -18,6 +18,7 @@ SWING: Rgb = (240, 228, 66)
 FOOT: dict[Role, Rgb] = {Role.LEFT: BLUE, Role.RIGHT: ORANGE, Role.FOOT: BLUE, Role.OTHER: (86, 180, 233)}
 CANDIDATE: Rgb = (214, 96, 196)
 TRUTH: Rgb = (60, 170, 120)
+OWN: Rgb = (172, 178, 188)  # what a sensor says of itself
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import fields
 
-from app.motion import FootView, GaitPhase, Link, Role, Snapshot, Status
+from app.motion import FootView, GaitPhase, Link, OwnView, Role, Snapshot, Status
 from app.scene import words
 from app.scene.guard import drawable
 from app.settings import LIMITS, Limit, Settings, Value
@@ -48,12 +48,12 @@ def message(snapshot: Snapshot, status: Status) -> str:
     return ""
 
 
-def feet(snapshot: Snapshot) -> str:
-    """A card per foot."""
+def feet(snapshot: Snapshot, own: bool = False) -> str:
+    """A card per foot; ``own``: the walks by the sensors' own orientations are shown."""
     cards = "".join(_card(foot) for foot in snapshot.main.feet)
     note = UNLINKED if len(snapshot.main.feet) > 1 else ""
     return (
-        cards + note + hindsight(snapshot) + legend(snapshot)
+        cards + note + hindsight(snapshot) + legend(snapshot, own)
         if cards
         else '<div class="ss-note">No foot yet.</div>'
     )
@@ -70,11 +70,12 @@ def hindsight(snapshot: Snapshot) -> str:
     return f'<div class="ss-note">Hindsight: smoothed up to {words.clock(track.smoothed_s)}{now}.</div>'
 
 
-def legend(snapshot: Snapshot) -> str:
+def legend(snapshot: Snapshot, own: bool = False) -> str:
     """Which line is which."""
     lines = [("walk", "walk"), ("newest", "newest stride, provisional")]
     lines += [("candidate", "candidate")] if snapshot.candidate else []
     lines += [("truth", "truth")] if snapshot.truth else []
+    lines += [("own", "by the sensor's own orientation")] if own and snapshot.own else []
     keys = "".join(f'<span><i class="ss-{name}"></i>{label}</span>' for name, label in lines)
     return f'<div class="ss-legend">{keys}</div>'
 
@@ -137,6 +138,7 @@ def source(snapshot: Snapshot, status: Status) -> str:
         rows.append((words.plain(sensor, 40), _health(health.rate_hz, health.taken, health.segments)))
         rows.append(("· dropped", words.counts(dict(health.dropped))))
         rows.append(("· saturated", f"{health.saturated} samples"))
+    rows += [(f"· its own walk ({words.plain(name, 40)})", _own(own)) for name, own in snapshot.own.items()]
     stored, budget = words.megabytes(snapshot.stored_bytes), words.megabytes(snapshot.budget_bytes)
     rows.append(("Memory", f"{stored} of {budget}"))
     rows.append(("Hindsight from", words.clock(snapshot.hindsight_from_s)))
@@ -148,6 +150,13 @@ def source(snapshot: Snapshot, status: Status) -> str:
 def _health(rate_hz: float, taken: int, segments: int) -> str:
     plural = "" if segments == 1 else "s"
     return f"{words.number(rate_hz, 1)} Hz, {taken} samples, {segments} segment{plural}"
+
+
+def _own(own: OwnView) -> str:
+    """The walk by the sensor's own orientation, beside ours."""
+    tilt, heading = (words.number(math.degrees(angle), 1) for angle in (own.tilt_rad, abs(own.heading_rad)))
+    walked, back = (" ".join(words.metres(length)) for length in (own.distance_m, own.to_start_m))
+    return f"{walked}, {back} to start; tilt {tilt}° and heading {heading}° from ours"
 
 
 def _frame(snapshot: Snapshot) -> str:

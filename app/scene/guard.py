@@ -7,13 +7,13 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion import FootView, Quaternion
+from app.motion import FootView, OwnView, Quaternion
 
 #: Further away than this is a filter that ran off, not a walk; single precision ends here too.
 FAR_M = 1e5
 
 
-def drawable(foot: FootView) -> bool:
+def drawable(foot: FootView | OwnView) -> bool:
     """Whether the shoe can be put where this says."""
     numbers = (*foot.position_n, *foot.q_nb)
     if not all(map(math.isfinite, numbers)):

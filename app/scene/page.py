@@ -37,7 +37,7 @@ class Scene:
     def __init__(self, submit: Submit) -> None:
         self._server = private.open_server("Stridescope")
         self.port = self._server.get_port()
-        self._view = {"follow": True, "dark": True, "axes": False}
+        self._view = {"follow": True, "dark": True, "axes": False, "own": False}
         self._glide, self._drawn_at, self._next_text, self._next_graph = Glide(), 0.0, 0.0, 0.0
         self._centre: Vector = self._glide.centre
         self._controls = Controls(self._server.gui, submit)
@@ -102,6 +102,8 @@ class Scene:
             self._ground.recolour(on)
         if name == "axes":
             self._walkers.show_axes(on)
+        if name == "own":
+            self._walkers.show_own(on)
 
     def _theme(self, dark: bool) -> None:
         self._server.gui.configure_theme(

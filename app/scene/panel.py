@@ -89,10 +89,12 @@ class Panel:
         again: dict[str, Ask] = {"Reset heading": ResetHeading, "Restart from here": RestartHere}
         self._walk = self._controls.choice("Walk", again)
         labels = {"follow": "Follow the walker", "dark": "Dark mode", "axes": "Sensor axes"}
+        labels["own"] = "Sensor's own orientation"
         hints = {
             "follow": "The world glides so that the walker stays in view; your orbit and zoom stay yours.",
             "dark": "For every browser on this page.",
             "axes": "x (red) to the toe, y (green) to the right, z (blue) down.",
+            "own": "A grey shoe: the walk by the orientation that the sensor computed itself.",
         }
         switches = {
             name: self._controls.checkbox(label, self._switch(name), view[name], hints[name])
@@ -126,7 +128,7 @@ class Panel:
         """Words, figures and controls: at most ten times a second."""
         self._header.show(figures.header(status) + beat(time.time()))
         self._message.show(banner(status) + figures.message(snapshot, status))
-        self._feet.show(figures.feet(snapshot))
+        self._feet.show(figures.feet(snapshot, view["own"]))
         self._phones[0].show("" if snapshot.main.feet else phones.code(status))
         self._phones[1].show(phones.code(status))
         self._soundness.show(snapshot, status)

@@ -7,8 +7,8 @@ from collections.abc import Iterable
 
 import viser
 
-from app.motion import FootView, Role, Snapshot, Trail, Vector
-from app.scene.colours import CANDIDATE, FOOT, TRUTH, Rgb, blend
+from app.motion import FootView, OwnView, Role, Snapshot, Trail, Vector
+from app.scene.colours import CANDIDATE, FOOT, OWN, TRUTH, Rgb, blend
 from app.scene.doubt import Doubt
 from app.scene.footprints import Footprints
 from app.scene.guard import drawable, unit
@@ -20,6 +20,7 @@ GREY: Rgb = (150, 156, 166)
 EMPTY = Trail((), NOTHING[:0], NOTHING[:0])
 
 TRUTH_LOOK = Look(TRUTH, blend(TRUTH, GREY, 0.3), 1.5)
+OWN_LOOK = Look(OWN, blend(OWN, GREY, 0.3), 1.5)
 GHOST_LOOK = Look(CANDIDATE, blend(CANDIDATE, GREY, 0.35), 2.0)
 
 
@@ -61,6 +62,8 @@ class Walker:
         self._ghost: Shoe | None = None
         self._ghost_trail: TrailNodes | None = None
         self._truth_trail: TrailNodes | None = None
+        self._own: Shoe | None = None
+        self._own_trail: TrailNodes | None = None
 
     def draw(self, foot: FootView) -> Vector | None:
         """Show it; returns where it is drawn, or nothing while its pose is no finite number."""
@@ -95,6 +98,25 @@ class Walker:
             self._truth_trail = TrailNodes(self._scene, f"{self._name}_truth", TRUTH_LOOK, self._offset)
         self._truth_trail.draw(EMPTY if trail is None else trail)
 
+    def draw_own(self, own: OwnView | None) -> None:
+        """The walk by the sensor's own orientation, or nothing."""
+        if own is None:
+            self._drop_own()
+            return
+        if self._own is None:
+            self._own = Shoe(self._scene, f"/ned/own/{self._name}", self._role, ghost=OWN)
+            self._own_trail = TrailNodes(self._scene, f"{self._name}_own", OWN_LOOK, self._offset)
+        if self._own_trail is not None:
+            self._own_trail.draw(own.trail)
+        if drawable(own):
+            self._own.pose(unit(own.q_nb), self._moved(own.position_n))
+
+    def _drop_own(self) -> None:
+        if self._own is not None and self._own_trail is not None:
+            self._own.remove()
+            self._own_trail.remove()
+            self._own = self._own_trail = None
+
     def _moved(self, p: Vector) -> Vector:
         return (p[0] + self._offset[0], p[1] + self._offset[1], p[2] + self._offset[2])
 
@@ -107,6 +129,7 @@ class Walker:
     def remove(self) -> None:
         """Take the foot and all that is its off the page."""
         self._drop_ghost()
+        self._drop_own()
         for part in (self.shoe, self._shadow, self._doubt, self._trail, self._prints, self._truth_trail):
             if part is not None:
                 part.remove()
@@ -121,6 +144,7 @@ class Walkers:
         self._made_for: object = None
         self._note: viser.LabelHandle | None = None
         self._axes = False
+        self._show_own = False
 
     def draw(self, snapshot: Snapshot) -> list[Vector]:
         """Show every foot; returns where the shoes stand."""
@@ -135,7 +159,12 @@ class Walkers:
         for sensor, walker in self._walkers.items():
             walker.draw_ghost(ghosts.get(sensor))
             walker.draw_truth(snapshot.truth.get(sensor))
+            walker.draw_own(snapshot.own.get(sensor) if self._show_own else None)
         return [place for place in places if place is not None]
+
+    def show_own(self, on: bool) -> None:
+        """The walk by each sensor's own orientation, where it tells one."""
+        self._show_own = on
 
     def show_axes(self, on: bool) -> None:
         """The sensor's axes on every shoe."""
