@@ -32,7 +32,7 @@ from app.preflight import Preflight, sentence
 
 log = logging.getLogger(__name__)
 
-#: Between looks at the pre-flight.
+#: Between looks at how far both are.
 LOOK_S = 0.1
 
 
@@ -52,6 +52,7 @@ class Before:
         self._fitting: asyncio.Task[None] | None = None
         self._preflight: Preflight | None = None
         self._seen: PreflightView | None = None
+        self._shown: CalibrationView | None = None
         self._next_s = 0.0
 
     # --- samples -----------------------------------------------------------------------------------
@@ -167,10 +168,12 @@ class Before:
     def look(self, snapshot: Snapshot, status: Status) -> Status:
         """The status with both views in it; the pre-flight is judged by what is shown."""
         now_s = time.monotonic()
-        if self._preflight is not None and now_s >= self._next_s:
+        if now_s >= self._next_s:
             self._next_s = now_s + LOOK_S
-            self._judge(self._preflight, snapshot)
-        return replace(status, calibration=self._view(), preflight=self._seen)
+            self._shown = self._view()
+            if self._preflight is not None:
+                self._judge(self._preflight, snapshot)
+        return replace(status, calibration=self._shown, preflight=self._seen)
 
     def _judge(self, preflight: Preflight, snapshot: Snapshot) -> None:
         field = snapshot.main.settings.magnetometer

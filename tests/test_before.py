@@ -81,7 +81,7 @@ def test_a_guided_calibration_is_found_saved_and_used() -> None:
         for sample in samples[1:]:
             now.sample(sample)
         while not now.look(Session(Settings()).snapshot(), Status(LIVE, Link.LIVE)).calibration.found:  # type: ignore[union-attr]
-            await asyncio.sleep(0.01)
+            await asyncio.sleep(0.05)
 
     with pytest.raises(InputError, match="no sample yet"):
         now.calibrate(Calibrate("start"))
