@@ -1,8 +1,8 @@
-"""Benchmarks: ``make soak``, the long runs: kills of a recording, sensors, an hour of walk, handling.
+"""Benchmarks: ``make soak``, the long runs: kills, sensors, an hour of walk, handling, stalls, sleep.
 
-``python benchmarks/soak.py [--minutes N] [--json]``: N minutes of clock in all (15 unless told: an hour
-of walk at 8× takes 7.5 of them, rough handling the other half), two thirds of N more for sensors on serial
-ports, and about five minutes for the kills.
+``python benchmarks/soak.py [--minutes N] [--json] [WORD …]``: N minutes (15 unless told) for an hour of
+walk at 8× (7.5 of them) and rough handling (the other half), two thirds of N more for sensors on serial
+ports, as long for a stalled browser, half of that for one asleep, and about five minutes for the kills.
 """
 
 from __future__ import annotations
@@ -14,30 +14,37 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import handling, hour, kills, links
+from benchmarks import asleep, handling, hour, kills, links, stalled
 from benchmarks.bench import machine, measure
 from benchmarks.figures import table
 
 USUAL_MINUTES = 15.0
-LEAST_MINUTES, MOST_MINUTES = 1.0, 30.0
+LEAST_MINUTES, MOST_MINUTES = 0.5, 19.0
 
 
 def main() -> int:
-    """Run both parts and tell."""
+    """Run the parts and tell."""
     parser = argparse.ArgumentParser(prog="soak.py", description="The long runs, one table.")
-    parser.add_argument("--minutes", type=float, default=USUAL_MINUTES, help="of clock, in all")
+    parser.add_argument(
+        "--minutes", type=float, default=USUAL_MINUTES, help="of the hour and of the handling together"
+    )
     parser.add_argument("--json", action="store_true", help="one JSON object instead of the tables")
+    parser.add_argument("words", nargs="*", metavar="WORD", help="only parts whose title has it (stalled, …)")
     options = parser.parse_args()
     if not LEAST_MINUTES <= options.minutes <= MOST_MINUTES:
         parser.error(f"--minutes {options.minutes:g}: expected {LEAST_MINUTES:g} to {MOST_MINUTES:g}")
     half_s, ports_s = 30.0 * options.minutes, 40.0 * options.minutes
+    stalled_s, asleep_s = 40.0 * options.minutes, 20.0 * options.minutes
     count = kills.KILLS if options.minutes >= USUAL_MINUTES else kills.KILLS // 10
     parts = {
         f"{count} kills of a recording": kills.kills(count),
         f"{ports_s / 60:.1f} minutes of sensors on serial ports": links.links(ports_s),
         f"{8 * half_s / 60:.0f} minutes of walk at 8×": hour.hour(half_s),
         f"{half_s / 60:.1f} minutes of rough handling": handling.handling(half_s),
+        f"{stalled_s / 60:.1f} minutes of a stalled browser": stalled.stalled(stalled_s),
+        f"{asleep_s / 60:.1f} minutes of a browser asleep": asleep.asleep(asleep_s),
     }
+    parts = {name: part for name, part in parts.items() if all(word in name for word in options.words)}
     found = {}
     for name, section in parts.items():
         found[name] = measure(name, section)
