@@ -9,6 +9,7 @@ from collections.abc import Sequence
 
 from app import __version__
 from app.commands import (
+    bench,
     calibrate,
     devices,
     doctor,
@@ -42,6 +43,7 @@ COMMANDS = {
     "devices": devices,
     "calibrate": calibrate,
     "doctor": doctor,
+    "bench": bench,
 }
 
 

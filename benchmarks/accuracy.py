@@ -8,7 +8,8 @@ from app.estimator.tracker import track
 from app.settings import BUILT_IN, Settings
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec
-from benchmarks import measured
+from benchmarks import honesty, kinds, measured, mocap, peers
+from benchmarks import insoles as soles
 from benchmarks.figures import Figure, Section
 
 #: What each profile is held to: Vicon mean m, median %, worst m, PyShoe's own metric m; corridor mean %,
@@ -30,6 +31,54 @@ def accuracy() -> Section:
         return
     for profile, wanted in WANTED.items():
         yield from walked(profile, BUILT_IN[profile], wanted)
+        yield from gait(profile, BUILT_IN[profile])
+    covered = honesty.coverage(BUILT_IN["default"])
+    yield Figure(
+        "default: Vicon room: truth inside the 95 % ellipse", covered, "%", 90.0, True, "wanted: 90 to 99"
+    )
+    yield from beside("imufusion with ZUPT", peers.with_imufusion)
+    if peers.has_gaitmap():
+        yield from beside("gaitmap RtsKalman", peers.with_gaitmap)
+    else:
+        yield Figure("gaitmap RtsKalman", None, note=f"not installed: {peers.GAITMAP} is not there")
+
+
+def gait(profile: str, settings: Settings) -> Section:
+    """Strides: their length beside motion capture's, and whether each that an insole feels is found."""
+    limit = {"default": 35.0, "hindsight": 30.0}.get(profile)
+    away = [length.found_m - length.true_m for length in mocap.lengths(settings)]
+    note = f"{len(away)} strides, {1000 * float(np.mean(away)):+.1f} mm on average"
+    mean_mm = 1000 * float(np.mean(np.abs(away)))
+    yield Figure(f"{profile}: stride length beside motion capture, mean", mean_mm, "mm", limit, note=note)
+    feet = list(soles.insoles(settings))
+    true, found, both = (
+        sum(int(count) for count in counts) for counts in zip(*(foot[1:] for foot in feet), strict=True)
+    )
+    wanted = None if limit is None else 99.0
+    for name, whole in (("recall", true), ("precision", found)):
+        share = 100.0 * both / max(whole, 1)
+        what = f"{profile}: strides that insoles feel, {name}"
+        yield Figure(what, share, "%", wanted, True, f"{both} of {whole}")
+
+
+def beside(name: str, peer: measured.How) -> Section:
+    """A peer on the same recordings, scored the same."""
+    vicon = [score for score in measured.vicon(peer) if score.name != measured.IN_PLACE]
+    corridor = list(measured.corridor(peer))
+    mean = float(np.mean([score.rmse_m for score in vicon]))
+    yield Figure(f"{name}: Vicon room: RMSE 3-D, mean", mean, "m")
+    yield from spread(f"{name}: Vicon room", vicon, None, None)
+    yield from spread(f"{name}: corridor", corridor, None, None)
+
+
+def simulated_kinds() -> Section:
+    """10,000 strides of every kind under ``default``: the errors, and whether failures are known."""
+    for kind in kinds.kinds(BUILT_IN["default"]):
+        percents = [walk.percent for walk in kind.walks]
+        p95, failed = float(np.quantile(percents, 0.95)), len(kind.failed)
+        note = f"p95 {p95:.2f} %, {failed} of {len(kind.walks)} walks failed"
+        yield Figure(f"{kind.name}: RMSE / path, median", float(np.median(percents)), "%", note=note)
+        yield Figure(f"{kind.name}: failed and called good", len(kind.unnoticed), "", 0)
 
 
 def walked(profile: str, settings: Settings, wanted: tuple[float | None, ...]) -> Section:
@@ -48,6 +97,13 @@ def walked(profile: str, settings: Settings, wanted: tuple[float | None, ...]) -
     yield from spread(f"{profile}: corridor", corridor, None, corridor_worst)
     mean = float(np.mean([score.percent for score in corridor]))
     yield Figure(f"{profile}: corridor: RMSE / path, mean", mean, "%", corridor_mean)
+    true, found = sum(s.true_strides for s in corridor), sum(s.strides for s in corridor)
+    exact = None if profile == "papers" else float(true)
+    yield Figure(f"{profile}: corridor: strides", found, "", exact, True, f"of {true}")
+    rise = max(corridor, key=lambda score: abs(score.rise_m / score.path_m))
+    height_limit = {"default": 0.5, "hindsight": 0.3}.get(profile)
+    percent = 100.0 * abs(rise.rise_m) / rise.path_m
+    yield Figure(f"{profile}: corridor: height at the end, worst", percent, "%", height_limit, note=rise.name)
     length = max(corridor, key=lambda score: abs(score.length_percent))
     yield Figure(
         f"{profile}: corridor: path too long by, worst", length.length_percent, "%", note=length.name

@@ -20,6 +20,7 @@ from benchmarks.figures import Figure, Section, table
 
 SECTIONS = {
     "accuracy": accuracy.accuracy,
+    "kinds": accuracy.simulated_kinds,
     "cost": cost.cost,
     "start": start.start,
     "decoders": decoders.decoders,

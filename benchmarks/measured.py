@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,13 +10,18 @@ import numpy as np
 import scipy.io
 
 from app import batch
-from app.motion import Floats
+from app.motion import Floats, Samples
 from app.settings import Settings
+from app.sources.files import load
 from benchmarks import scoring
 
 DATA = Path(__file__).resolve().parent.parent.parent / "shared" / "data"
 #: Lifts the foot in place: 0.1 m of path, so no share of it means anything.
 IN_PLACE = "2018-02-09-11-16-53"
+
+
+#: What estimates: our settings, or a peer: one foot's samples → positions [n, 3] (x, y, z up).
+How = Settings | Callable[[Samples], Floats]
 
 
 class Score(NamedTuple):
@@ -26,6 +31,9 @@ class Score(NamedTuple):
     rmse_m: float
     path_m: float
     found_m: float = 0.0  # the estimate's own path, through the same points
+    strides: int = 0  # found
+    true_strides: int = 0  # footprints, but for the first
+    rise_m: float = 0.0  # height at the end
     pyshoe_m: float = 0.0  # the Vicon room: the error in the metric of that data set's authors
 
     @property
@@ -47,15 +55,18 @@ class Estimate(NamedTuple):
     summary: dict[str, Any]
 
 
-def estimate(path: Path, settings: Settings) -> Estimate:
-    """What the app makes of a recording of one foot, as ``process`` does it."""
+def estimate(path: Path, settings: How) -> Estimate:
+    """What the app makes of a recording of one foot, as ``process`` does it; or what a peer makes of it."""
+    if not isinstance(settings, Settings):
+        samples = load(path).sensors[0]
+        return Estimate(samples.matrix[:, 0] * 1e-9, settings(samples), {"strides": 0})
     done = batch.process(str(path), settings)
     (sensor,), (tracker,) = done.recording.sensors, done.trackers.values()
     rows = tracker.rows.table(tracker.rows.start, tracker.rows.end)
     return Estimate(sensor.matrix[:, 0] * 1e-9, scoring.up(rows[:, :3]), batch.foot_summary(tracker))
 
 
-def vicon(settings: Settings) -> Iterator[Score]:
+def vicon(settings: How) -> Iterator[Score]:
     """Every trial of pyshoe_vicon: 3-D, over all samples."""
     for path in sorted((DATA / "pyshoe_vicon").glob("*.mat")):
         trial = scipy.io.loadmat(path, variable_names=["gt", "ts"])
@@ -69,11 +80,11 @@ def vicon(settings: Settings) -> Iterator[Score]:
             scoring.rmse_m(found.position, truth),
             scoring.path_m(truth, scoring.PATH_EVERY),
             scoring.path_m(found.position, scoring.PATH_EVERY),
-            scoring.pyshoe_m(found.position, truth),
+            pyshoe_m=scoring.pyshoe_m(found.position, truth),
         )
 
 
-def corridor(settings: Settings) -> Iterator[Score]:
+def corridor(settings: How) -> Iterator[Score]:
     """Every recording of hallway_gcp: 2-D, at the footprints, whose times their file gives."""
     for prints in sorted((DATA / "hallway_gcp").glob("*_strideIndex_timestamp_gcpX_gcpY.csv")):
         path = prints.with_name(prints.name.partition("_strideIndex")[0] + ".csv")
@@ -82,7 +93,15 @@ def corridor(settings: Settings) -> Iterator[Score]:
         found = estimate(path, settings)
         rows = np.clip(np.searchsorted(found.t_s, table[:, 1] - 1e-3), 0, len(found.t_s) - 1)
         score = scoring.rmse_m(found.position[rows, :2], truth)
-        yield Score(path.stem, score, scoring.path_m(truth), scoring.path_m(found.position[rows]))
+        yield Score(
+            path.stem,
+            score,
+            scoring.path_m(truth),
+            scoring.path_m(found.position[rows]),
+            int(found.summary["strides"]),
+            len(truth) - 1,
+            float(found.position[-1, 2] - found.position[0, 2]),
+        )
 
 
 def closures(folder: str, settings: Settings) -> Iterator[tuple[str, dict[str, Any]]]:

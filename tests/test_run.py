@@ -22,7 +22,7 @@ from tests.scene.pages import PATIENCE_MS, open_page, pixels
 #: A walk of a minute; drawn small, because a test machine has no graphics card.
 SOURCE = "sim:walk?path=eight&size=6&duration=60&rate=100&still=1&noise=0.3"
 POSITION = "() => Object.assign({}, window.__viserMutable.nodeRefFromName['/ned/foot'].position)"
-GAIN_SHOWN = "() => Array.from(document.querySelectorAll('input')).some(i => i.value === '0.4')"
+HEIGHT_SHOWN = "() => Array.from(document.querySelectorAll('input')).some(i => i.value === '0.04')"
 NODES = "() => Object.keys(window.__viserSceneTree.getState()).filter(name => name.startsWith('/ned'))"
 
 
@@ -123,9 +123,9 @@ def test_a_slider_makes_a_ghost_that_both_browsers_see(
 ) -> None:
     second = open_page(browser, program.address, (900, 600))
     try:
-        move_slider(page, "Stance gain", "0.4")
+        move_slider(page, "Sensor height", "0.04")
         for seen in (page, second):
-            seen.wait_for_function(GAIN_SHOWN, timeout=PATIENCE_MS)
+            seen.wait_for_function(HEIGHT_SHOWN, timeout=PATIENCE_MS)
             seen.wait_for_function(
                 f"() => ({NODES})().some(name => name.startsWith('/ned/ghost/'))", timeout=PATIENCE_MS
             )
@@ -134,7 +134,7 @@ def test_a_slider_makes_a_ghost_that_both_browsers_see(
             seen.wait_for_function(
                 f"() => !({NODES})().some(name => name.startsWith('/ned/ghost/'))", timeout=PATIENCE_MS
             )
-            assert seen.evaluate(GAIN_SHOWN), "after Apply the slider stays where it was moved"
+            assert seen.evaluate(HEIGHT_SHOWN), "after Apply the slider stays where it was moved"
     finally:
         second.close()
 
