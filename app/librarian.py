@@ -3,16 +3,23 @@
 from __future__ import annotations
 
 import asyncio
+import os
+import sys
+from asyncio.subprocess import DEVNULL, PIPE
 from collections.abc import Callable, Coroutine
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
 from app import motion as m
-from app.shelf import Shelf
+from app.outputs.files import beside
+from app.settings import Settings
+from app.shelf import SHARED, Shelf
 from app.sources.opening import open_source
 from app.sources.source import Source
 from app.warm import warm_up
 
+ROOT = Path(__file__).parent.parent
 #: Between looks at the folder.
 LOOK_S = 2.0
 
@@ -26,6 +33,7 @@ class Librarian:
         self.shelf = Shelf(folder)
         self.files: tuple[m.ShelfFile, ...] = ()
         self._say, self._opened = say, opened
+        self._sharing = False
         self._errands: set[asyncio.Task[None]] = set()
 
     async def look(self) -> None:
@@ -34,14 +42,16 @@ class Librarian:
             self.files = await asyncio.to_thread(self.shelf.files)
             await asyncio.sleep(LOOK_S)
 
-    def take(self, command: m.Play | m.Rename) -> None:
-        """Begin what is asked for; what becomes of it is said."""
+    def take(self, command: m.Play | m.Rename | m.Share, settings: Settings) -> None:
+        """Begin what is asked for; what becomes of it is said. ``settings`` are the main track's."""
         match command:
             case m.Play(name):
                 self._say(f"Opening {name}")
                 self._send(self._play(name))
             case m.Rename(name, to):
                 self._send(self._rename(name, to))
+            case m.Share(name):
+                self._send(self._share(name, settings))
 
     def _send(self, errand: Coroutine[Any, Any, None]) -> None:
         task = asyncio.create_task(self._told(errand))
@@ -64,6 +74,38 @@ class Librarian:
         if source.settings is not None:
             warm_up(source.settings.estimator)
         return source
+
+    async def _share(self, name: str, settings: Settings) -> None:
+        """In a process of its own: it is long work, and samples come first."""
+        if self._sharing:
+            raise m.InputError("a page to share is being made already, one at a time")
+        path = await asyncio.to_thread(self.shelf.path, name)
+        into = path.with_suffix(SHARED)
+        into = beside(into, "shared") if into.exists() else into
+        told = [f"--set={key}={value}" for key, value in asdict(settings).items()]
+        command = ("-m", "app", "export", f"replay:{path}", "--format", "html", "--out", str(into), *told)
+        self._say(f"Making {into.name}: a minute or two for a long walk")
+        self._sharing = True
+        try:
+            await self._run(command)
+        finally:
+            self._sharing = False
+        self.files = await asyncio.to_thread(self.shelf.files)
+        self._say(f"{into.name} is in the library: download it, it plays without a network")
+
+    async def _run(self, command: tuple[str, ...]) -> None:
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join([str(ROOT), *sys.path])}
+        process = await asyncio.create_subprocess_exec(
+            sys.executable, *command, env=environment, stdout=DEVNULL, stderr=PIPE
+        )
+        try:
+            _, trouble = await process.communicate()
+        finally:
+            if process.returncode is None:
+                process.kill()
+        if process.returncode:
+            lines = trouble.decode(errors="replace").strip().splitlines()
+            raise m.InputError(lines[-1] if lines else "the page could not be made")
 
     async def _rename(self, name: str, to: str) -> None:
         new = await asyncio.to_thread(self.shelf.rename, name, to)

@@ -461,6 +461,13 @@ class Mark:
 
 
 @dataclass(frozen=True)
+class Share:
+    """Make a page that plays a recording of the library offline, under the main track's settings."""
+
+    name: str
+
+
+@dataclass(frozen=True)
 class Play:
     """Leave this source and play a recording of the library, by its file's name."""
 
@@ -505,6 +512,7 @@ Command = (
     | Record
     | Mark
     | Play
+    | Share
     | Rename
     | Calibrate
     | CheckFirst

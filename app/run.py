@@ -284,8 +284,8 @@ class Viewer:
                     self._source.control(command)
                 case m.Record(on):
                     self._record(on)
-                case m.Play() | m.Rename() as command:
-                    self._librarian.take(command)
+                case m.Play() | m.Rename() | m.Share() as command:
+                    self._librarian.take(command, self._session.main.settings)
                 case m.Mark(text):
                     self._mark(order.who, text)
                 case m.Calibrate() as command:

@@ -51,6 +51,7 @@ SHELL = {
     "__init__",
     "librarian",
     "shelf",
+    "film",
 }
 #: Parts of the shell that others of it wire in.
 WIRED = {"run": {"before", "librarian"}, "librarian": {"shelf"}}

@@ -13,8 +13,9 @@ def add(commands: Commands) -> None:
     give = commands.add_parser("export", help="a recording in another format, as a new file")
     give.add_argument("file", metavar="FILE")
     give.add_argument(
-        "--format", required=True, choices=("csv", "tum", "strides", "gpx", "kml", "geojson", "sto"),
-        help="csv: the samples; sto: orientations for OpenSim; the others: the estimated walk",
+        "--format", required=True, choices=("csv", "tum", "strides", "gpx", "kml", "geojson", "sto", "html"),
+        help="csv: the samples; sto: orientations for OpenSim; html: a page that plays the walk offline;"
+        " the others: the estimated walk",
     )  # fmt: skip
     give.add_argument("--out", metavar="PATH", type=Path, help="where to (beside the recording)")
     give.add_argument("--origin", metavar="LAT,LON[,ALT]", help="where the walk starts, for a map")
@@ -33,6 +34,10 @@ def run(options: argparse.Namespace) -> int:
     wish.place()  # before any work
     if options.format == "csv":
         files = exports.samples(options.file, wish)
+    elif options.format == "html":
+        from app import film
+
+        files = [film.share(options.file, settings_of(options), wish.path(options.file))]
     else:
         done = batch.process(options.file, settings_of(options))
         files = exports.walk(options.file, wish, done.recording, done.trackers)

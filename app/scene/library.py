@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from urllib.parse import quote
 
-from app.motion import Command, Play, Rename, ShelfFile, Status
+from app.motion import Command, Play, Rename, Share, ShelfFile, Status
 from app.scene import words
 from app.scene.controls import Controls
 
@@ -27,7 +27,7 @@ class Library:
         self._list = controls.dropdown(
             "From the library", (CHOOSE,), self._choose, "The folder of recordings."
         )
-        controls.choice("", {"Open": self._play, "Rename": self._rename})
+        controls.choice("", {"Open": self._play, "Share": self._share, "Rename": self._rename})
         controls.text("New name", self._typed, "What Rename gives the chosen recording.", longest=80)
         controls.gui.add_html(UPLOAD)
         self._table = controls.html()
@@ -49,6 +49,9 @@ class Library:
 
     def _play(self) -> Command | None:
         return None if self._chosen == CHOOSE else Play(self._chosen)
+
+    def _share(self) -> Command | None:
+        return None if self._chosen == CHOOSE else Share(self._chosen)
 
     def _rename(self) -> Command | None:
         return None if self._chosen == CHOOSE or not self._name else Rename(self._chosen, self._name)

@@ -6,6 +6,8 @@ import logging
 import time
 from collections.abc import Mapping
 
+import viser
+
 from app.motion import GuiRule, Quaternion, Snapshot, Status, Vector
 from app.scene import private
 from app.scene.controls import Controls, Submit
@@ -50,7 +52,7 @@ class Scene:
         self._theme(dark=True)
         self.panel = Panel(self._controls, self._set_view, self._view)
         self.head = head(self.panel.keys(), self.panel.resets())
-        self._start_camera()
+        place_camera(self._server)
 
     def draw(self, snapshot: Snapshot, status: Status) -> None:
         """Make every browser show this; cheap for what has not changed."""
@@ -110,11 +112,12 @@ class Scene:
             dark_mode=dark, show_logo=False, show_share_button=False, brand_color=(0, 114, 178)
         )
 
-    def _start_camera(self) -> None:
-        """From behind and to the right, near enough to see the shoe, far enough for a stride."""
-        camera = self._server.initial_camera
-        camera.position = (1.15, -1.65, 0.95)
-        camera.look_at = (0.05, 0.1, -0.12)
-        camera.up = (0.0, 0.0, 1.0)
-        camera.fov = 0.72
-        camera.near, camera.far = 0.02, 500.0
+
+def place_camera(server: viser.ViserServer, back: float = 1.0) -> None:
+    """From behind and to the right, near enough to see the shoe, far enough for a stride."""
+    camera = server.initial_camera
+    camera.position = (1.15 * back, -1.65 * back, 0.95 * back)
+    camera.look_at = (0.05, 0.1, -0.12)
+    camera.up = (0.0, 0.0, 1.0)
+    camera.fov = 0.72
+    camera.near, camera.far = 0.02, 500.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.motion import Order, Play, Rename, ShelfFile
+from app.motion import Order, Play, Rename, Share, ShelfFile
 from app.scene.library import table
 from app.scene.page import Scene
 from tests.scene import fakes
@@ -24,10 +24,13 @@ def test_a_recording_is_opened_and_renamed(scene: Scene, orders: list[Order]) ->
         browser.write(chosen, "walk.mcap")
         browser.write(control(scene, "Open"), "Open")
         until(lambda: orders)
+        browser.write(control(scene, "Share"), "Share")
+        until(lambda: len(orders) == 2)
         browser.write(control(scene, "New name"), " stairs ")
         browser.write(control(scene, "Rename"), "Rename")
-        until(lambda: len(orders) == 2)
-    assert [order.command for order in orders] == [Play("walk.mcap"), Rename("walk.mcap", "stairs")]
+        until(lambda: len(orders) == 3)
+    asked = [Play("walk.mcap"), Share("walk.mcap"), Rename("walk.mcap", "stairs")]
+    assert [order.command for order in orders] == asked
 
 
 def test_names_are_text_and_links_stay_in_the_library() -> None:
