@@ -14,7 +14,7 @@ from typing import Any
 from app import motion as m
 from app.outputs.files import beside
 from app.settings import Settings
-from app.shelf import SHARED, Shelf
+from app.shelf import SHARED, TRACK, Shelf, track
 from app.sources.opening import open_source
 from app.sources.source import Source
 from app.warm import warm_up
@@ -28,9 +28,15 @@ class Librarian:
     """Belongs to one loop. ``say`` tells the person a line; ``opened`` gets a source that is to be played."""
 
     def __init__(
-        self, folder: Path, say: Callable[[str], None], opened: Callable[[str, Source], None]
+        self,
+        folder: Path,
+        say: Callable[[str], None],
+        opened: Callable[[str, Source], None],
+        reference: m.Reference | None = None,
+        declination_deg: float = 0.0,
     ) -> None:
         self.shelf = Shelf(folder)
+        self.reference, self._declination_deg = reference, declination_deg
         self.files: tuple[m.ShelfFile, ...] = ()
         self._say, self._opened = say, opened
         self._sharing = False
@@ -47,7 +53,7 @@ class Librarian:
         match command:
             case m.Play(name):
                 self._say(f"Opening {name}")
-                self._send(self._play(name))
+                self._send(self._compare(name) if name.lower().endswith(TRACK) else self._play(name))
             case m.Rename(name, to):
                 self._send(self._rename(name, to))
             case m.Share(name):
@@ -67,6 +73,12 @@ class Librarian:
     async def _play(self, name: str) -> None:
         source = await asyncio.to_thread(self._open, name)
         self._opened(str(self.shelf.folder / name), source)
+        self._say("")
+
+    async def _compare(self, name: str) -> None:
+        """A GPS track does not take the walk's place: it is shown beside it."""
+        path = await asyncio.to_thread(self.shelf.path, name)
+        self.reference = await asyncio.to_thread(track, path, self._declination_deg)
         self._say("")
 
     def _open(self, name: str) -> Source:

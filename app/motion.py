@@ -789,6 +789,14 @@ class RecorderState(NamedTuple):
     trouble: str = ""  # one line for a red banner
 
 
+class Reference(NamedTuple):
+    """A way from elsewhere (a GPS track) to show beside the walk."""
+
+    name: str
+    segments: NDArray[np.float32]  # [k, 2, 2] metres, magnetic north and east of its start
+    length_m: float
+
+
 @dataclass(frozen=True)
 class Status:
     """What the shell knows and the session cannot: clocks, files, the source's state."""
@@ -810,6 +818,7 @@ class Status:
     preflight: PreflightView | None = None
     shelf: tuple[ShelfFile, ...] = ()
     errors: Mapping[str, float] | None = None  # of a simulated sensor, by name; None: it is no simulation
+    reference: Reference | None = None
 
 
 @dataclass(frozen=True)

@@ -75,6 +75,8 @@ class Options:
     profile: str = "default"
     record: Path | None = None  # record from the beginning
     recordings: Path = Path("recordings")  # for the button
+    reference: m.Reference | None = None
+    declination_deg: float = 0.0  # magnetic north east of true north, for GPS tracks
 
 
 def walk(options: Options, tell: Callable[[str], None]) -> None:
@@ -94,6 +96,8 @@ class Viewer:
             options.record or options.recordings,
             lambda line: self._say(line),
             lambda spec, opened: self._coming.put_nowait((spec, opened)),
+            options.reference,
+            options.declination_deg,
         )
         self._session = self._new_session(source.settings or options.settings, 0)
         self._recorder: Recorder | None = None
@@ -473,6 +477,7 @@ class Viewer:
             errors=self._source.errors,
             recording=self._recorder.state if self._recorder else self._status.recording,
             shelf=self._librarian.files,
+            reference=self._librarian.reference,
         )
 
     def _say(self, message: str, seconds: float = MESSAGE_S) -> None:

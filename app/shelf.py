@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
+import math
 import os
 import time
 from pathlib import Path
 
+from app.formats import gpx
 from app.formats.names import file_name, with_suffix_of
-from app.motion import InputError, ShelfFile
+from app.motion import InputError, Reference, ShelfFile
 from app.outputs.files import beside
-from app.sources.files import load
+from app.sources.files import load, read_bytes
 
 #: Files listed, the newest first.
 MOST = 200
 RECORDINGS = (".mcap", ".csv", ".mat", ".txt")
 SHARED = ".html"
-_LISTED = (*RECORDINGS, SHARED)
+TRACK = ".gpx"
+_LISTED = (*RECORDINGS, TRACK, SHARED)
 
 
 class Shelf:
@@ -66,12 +69,26 @@ class Shelf:
 
     def receive(self, part: Path, name: str) -> str:
         """Keep an uploaded file if it is a recording; what became of it, for the person."""
-        recording = load(part, shown=name)
+        told = self._told(part, name)
         path = self.folder / file_name(name)
         into = beside(path, "uploaded") if path.exists() else path
         try:
             os.link(part, into)
         except OSError as error:
             raise InputError(f"{name}: cannot be kept: {error.strerror}") from None
+        return f"{into.name}: {told}"
+
+    def _told(self, part: Path, name: str) -> str:
+        """What an uploaded file is, in words; ``InputError`` if it is nothing to open."""
+        if Path(name).suffix.lower() == TRACK:
+            return f"GPX track, {gpx.read(name, read_bytes(part)).length_m:.0f} m"
+        recording = load(part, shown=name)
         rows = sum(len(samples) for samples in recording.sensors)
-        return f"{into.name}: {recording.format}, {rows} samples, {recording.duration_s:.1f} s"
+        return f"{recording.format}, {rows} samples, {recording.duration_s:.1f} s"
+
+
+def track(path: Path, declination_deg: float) -> Reference:
+    """A GPX file as a track to show; ``declination_deg``: magnetic north east of true north."""
+    if not abs(declination_deg) <= 180.0:
+        raise InputError(f"--declination {declination_deg:g}: expected degrees east, −180 to 180")
+    return gpx.reference_of(gpx.read(path.name, read_bytes(path), math.radians(declination_deg)))

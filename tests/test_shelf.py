@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.motion import InputError
-from app.shelf import Shelf
+from app.shelf import Shelf, track
 from tests.formats.walks import random_samples, write
 
 WALK = write(random_samples(40))
@@ -61,3 +61,15 @@ def test_an_upload_that_is_no_recording_is_told_by_its_own_name(shelf: Shelf) ->
     with pytest.raises(InputError, match=r"^photo\.csv: begins with 'half'"):
         shelf.receive(shelf.folder / ".upload-x.part", "photo.csv")
     assert not (shelf.folder / "photo.csv").exists()
+
+
+def test_a_gps_track_is_kept_and_turned(shelf: Shelf) -> None:
+    part = shelf.folder / ".upload-x.part"
+    part.write_text(
+        '<gpx><trk><trkseg><trkpt lat="48" lon="11"/><trkpt lat="48.001" lon="11"/></trkseg></trk></gpx>'
+    )
+    assert shelf.receive(part, "gps.gpx") == "gps.gpx: GPX track, 111 m"
+    found = track(shelf.folder / "gps.gpx", 90.0)
+    assert found.segments[-1, 1].tolist() == pytest.approx([0.0, -111.2], abs=0.1)
+    with pytest.raises(InputError, match="declination"):
+        track(shelf.folder / "gps.gpx", 999.0)

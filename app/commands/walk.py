@@ -31,11 +31,16 @@ def add(commands: Commands) -> None:
     walk.add_argument(
         "--record", metavar="DIR", type=Path, help="record from the beginning, into this folder"
     )
+    walk.add_argument("--gpx", metavar="FILE", type=Path, help="a GPS track to show beside the walk")
+    walk.add_argument(
+        "--declination", metavar="DEG", type=float, default=0.0, help="magnetic north east of true north"
+    )
 
 
 def run(options: argparse.Namespace) -> int:
     """The live page, until Ctrl-C."""
     from app import run as viewer  # the heavy imports, after --help and --version
+    from app.shelf import track
 
     if options.memory_mb < 16:
         raise InputError(f"--memory-mb {options.memory_mb}: expected 16 or more")
@@ -49,6 +54,8 @@ def run(options: argparse.Namespace) -> int:
             told=options.profile is not None or bool(options.set),
             profile=Path(options.profile or DEFAULT_PROFILE).stem,
             record=options.record,
+            reference=track(options.gpx, options.declination) if options.gpx else None,
+            declination_deg=options.declination,
         ),
         tell,
     )

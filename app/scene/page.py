@@ -16,6 +16,7 @@ from app.scene.ground import Ground
 from app.scene.head import head
 from app.scene.panel import Panel
 from app.scene.pendulum import Pendulum, no_feet
+from app.scene.reference import ReferenceLine
 from app.scene.shoe import SENSOR_HEIGHT_M
 from app.scene.walkers import Walkers
 
@@ -49,6 +50,7 @@ class Scene:
         self._ground = Ground(self._server.scene, dark=True)
         self._walkers = Walkers(self._server.scene)
         self._pendulum: Pendulum | None = None
+        self._reference = ReferenceLine(self._server.scene)
         self._theme(dark=True)
         self.panel = Panel(self._controls, self._set_view, self._view)
         self.head = head(self.panel.keys(), self.panel.resets())
@@ -65,6 +67,7 @@ class Scene:
             self.panel.show_graphs(snapshot, hanging=status.source.rod_m is not None)
         if now >= self._next_text:
             self._next_text = now + TEXT_S
+            self._reference.draw(status.reference)
             self.panel.show_text(snapshot, status, self._view)
         self._server.flush()
 

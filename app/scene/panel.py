@@ -19,6 +19,7 @@ from app.scene.lab import LabTab
 from app.scene.library import Library
 from app.scene.profiles import Profiles
 from app.scene.recording import MARKER, TOGGLE, Recording, banner
+from app.scene.reference import told
 from app.scene.replaying import Replaying
 from app.scene.soundness import Soundness, tables
 from app.scene.tuning import Tuning
@@ -128,7 +129,7 @@ class Panel:
         """Words, figures and controls: at most ten times a second."""
         self._header.show(figures.header(status) + beat(time.time()))
         self._message.show(banner(status) + figures.message(snapshot, status))
-        self._feet.show(figures.feet(snapshot, view["own"]))
+        self._feet.show(figures.feet(snapshot, view["own"]) + told(status.reference))
         self._phones[0].show("" if snapshot.main.feet else phones.code(status))
         self._phones[1].show(phones.code(status))
         self._soundness.show(snapshot, status)

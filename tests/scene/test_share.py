@@ -19,17 +19,17 @@ WALK = "sim:walk?path=straight&feet=2&duration_s=4&still_s=1"
 
 @pytest.fixture(scope="module")
 def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return share(WALK, Settings(), tmp_path_factory.mktemp("shared") / "walk <b>.html")
+    return share(WALK, Settings(), tmp_path_factory.mktemp("shared") / "walk.html")
 
 
 def test_it_plays_from_a_file_without_a_network(page_file: Path, browser: Browser, build_dir: Path) -> None:
-    context = browser.new_context(offline=True, viewport={"width": 1000, "height": 640})
+    context = browser.new_context(offline=True, viewport={"width": 480, "height": 320})
     page = context.new_page()
     asked: list[str] = []
     page.on("request", lambda r: asked.append(r.url) if r.url.startswith(("http", "ws")) else None)
     page.goto(page_file.as_uri())
     for node in ("/ned/left", "/ned/right", "/ned/figures/left", "/ned/figures/title"):
-        page.wait_for_function(DRAWN, arg=node, timeout=PATIENCE_MS)
+        page.wait_for_function(DRAWN, arg=node, timeout=PATIENCE_MS, polling=500)
     page.screenshot(path=build_dir / "shared.png")
     context.close()
     assert asked == []
