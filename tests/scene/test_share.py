@@ -30,7 +30,7 @@ def test_it_plays_from_a_file_without_a_network(page_file: Path, browser: Browse
     page.goto(page_file.as_uri())
     for node in ("/ned/left", "/ned/right", "/ned/figures/left", "/ned/figures/title"):
         page.wait_for_function(DRAWN, arg=node, timeout=PATIENCE_MS, polling=500)
-    page.screenshot(path=build_dir / "shared.png")
+    page.screenshot(path=build_dir / "shared.png", timeout=PATIENCE_MS)
     context.close()
     assert asked == []
 
