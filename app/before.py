@@ -7,7 +7,6 @@ the recorder take is corrected already, so a recording repeats without the calib
 from __future__ import annotations
 
 import asyncio
-import logging
 import time
 from collections.abc import Callable
 from dataclasses import replace
@@ -30,8 +29,6 @@ from app.motion import (
 )
 from app.preflight import Preflight, sentence
 
-log = logging.getLogger(__name__)
-
 #: Between looks at how far both are.
 LOOK_S = 0.1
 
@@ -42,9 +39,8 @@ class Before:
     def __init__(self, info: Callable[[], SourceInfo], mark: Callable[[str], None]) -> None:
         self.names: dict[str, Role] = {}  # as a tap told
         self._info, self._mark = info, mark
-        self._used: dict[str, Calibration | None] = {}
-        self._undone: set[str] = set()
-        self._damaged = ""
+        self._corrections = calibrations.Corrections(info)
+        self._used = self._corrections.used
         self._guide: Guide | None = None
         self._guided = ""
         self._results: tuple[Calibration, Calibration] | None = None
@@ -60,15 +56,11 @@ class Before:
     def sample(self, sample: Sample) -> Sample:
         """A sample as it came, to the guide; corrected, to the pre-flight and to whoever takes it."""
         sensor = sample.sensor
-        if sensor not in self._used:
-            self._used[sensor] = self._load(sensor)
         if self._guide is not None and sensor == self._guided and not self._guide.done:
             self._guide.add(sample)
             if self._guide.done:
                 self._fitting = asyncio.get_running_loop().create_task(self._fit(self._guide))
-        calibration = self._used[sensor]
-        if calibration is not None:
-            sample = calibration.apply(sample)
+        sample = self._corrections.apply(sample)
         if self._preflight is not None:
             self._preflight.add(sample)
         return sample
@@ -80,21 +72,7 @@ class Before:
         return busy or any(used is not None for used in self._used.values()) or self._any_kept()
 
     def _any_kept(self) -> bool:
-        info = self._info()
-        return calibrations.meant_for(info) and any(self._load(sensor) for sensor in info.sensors)
-
-    def _load(self, sensor: str) -> Calibration | None:
-        info = self._info()
-        if not calibrations.meant_for(info):
-            return None
-        key = calibrations.key_of(info, sensor)
-        (self._undone.add if calibrations.was_undone(key) else self._undone.discard)(sensor)
-        try:
-            return calibrations.load(key)
-        except InputError as error:
-            self._damaged = str(error)
-            log.warning("%s", error)
-            return None
+        return any(self._corrections.find(sensor) for sensor in self._info().sensors)
 
     # --- orders ------------------------------------------------------------------------------------
 
@@ -137,7 +115,7 @@ class Before:
             raise InputError("no calibration to save: go through the steps first")
         calibrations.save(self._results[0])
         self._used[self._guided] = self._results[0]
-        self._undone.discard(self._guided)
+        self._corrections.undone.discard(self._guided)
         self._guide, self._results, self._found = None, None, ()
         return f"calibration of {self._guided} saved and applied"
 
@@ -146,7 +124,7 @@ class Before:
         key = calibrations.key_of(self._info(), sensor)
         if not (calibrations.redo(key) if on else calibrations.undo(key)):
             raise InputError(f"calibration of {sensor}: there is none to {'use again' if on else 'undo'}")
-        self._used[sensor] = self._load(sensor)
+        self._corrections.look(sensor)
         return f"calibration of {sensor} {'applied again' if on else 'undone'}, from the next sample on"
 
     def check(self, command: CheckFirst, roles: dict[str, Role]) -> None:
@@ -189,8 +167,8 @@ class Before:
         return CalibrationView(
             sensors=tuple(self._used) if calibrations.meant_for(info) else (),
             applied=applied,
-            undone=tuple(sorted(self._undone)),
+            undone=tuple(sorted(self._corrections.undone)),
             guide=self._guide.view() if self._guide is not None else None,
             found=self._found,
-            damaged=self._damaged,
+            damaged=self._corrections.damaged,
         )

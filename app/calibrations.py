@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 import hashlib
+import logging
+from collections.abc import Callable
 from pathlib import Path
 
 import platformdirs
 
 from app.calibration.words import Calibration, from_json, to_json
-from app.motion import InputError, SourceInfo
+from app.motion import InputError, Sample, SourceInfo
+
+log = logging.getLogger(__name__)
 
 MOST_BYTES = 64 * 1024
 
@@ -26,6 +30,43 @@ def key_of(info: SourceInfo, sensor: str) -> str:
 def meant_for(info: SourceInfo) -> bool:
     """Whether calibrations are applied to a source: a recording has had its own, if it needed one."""
     return info.duration_s is None or info.format == "simulator"
+
+
+class Corrections:
+    """The calibrations of one source's sensors, each looked up with its first sample."""
+
+    def __init__(self, info: Callable[[], SourceInfo]) -> None:
+        self._info = info
+        self.used: dict[str, Calibration | None] = {}
+        self.undone: set[str] = set()
+        self.damaged = ""  # one line: a file that cannot be used
+
+    def apply(self, sample: Sample) -> Sample:
+        """The sample, corrected if its sensor was calibrated."""
+        if sample.sensor not in self.used:
+            self.look(sample.sensor)
+        calibration = self.used[sample.sensor]
+        return sample if calibration is None else calibration.apply(sample)
+
+    def look(self, sensor: str) -> None:
+        """Look a sensor's calibration up, again."""
+        self.used[sensor] = self.find(sensor)
+        if (used := self.used[sensor]) is not None:
+            log.info("%s is corrected: calibrated %s", sensor, used.made)
+
+    def find(self, sensor: str) -> Calibration | None:
+        """What is kept for a sensor, if it is to be applied; a damaged one is told and left."""
+        info = self._info()
+        if not meant_for(info):
+            return None
+        key = key_of(info, sensor)
+        (self.undone.add if was_undone(key) else self.undone.discard)(sensor)
+        try:
+            return load(key)
+        except InputError as error:
+            self.damaged = str(error)
+            log.warning("%s", error)
+            return None
 
 
 def path_of(key: str) -> Path:

@@ -16,6 +16,7 @@ from dataclasses import dataclass
 
 from app import motion as m
 from app import visitors
+from app.calibrations import Corrections
 from app.clocks import Clock, LiveClock
 from app.door.access import Access
 from app.door.front import Door
@@ -73,9 +74,11 @@ class Feed:
 
     def __init__(self, source: Source, side: str | None) -> None:
         self.source, self.side = source, side
+        self._corrections = Corrections(lambda: source.info)
 
     def named(self, sample: m.Sample) -> m.Sample:
-        """The sample under its side's name."""
+        """The sample as its sensor was calibrated, under its side's name."""
+        sample = self._corrections.apply(sample)
         return sample if self.side is None else sample._replace(sensor=self.side)
 
 

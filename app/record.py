@@ -8,6 +8,7 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
+from app.calibrations import Corrections
 from app.formats.journal import Start
 from app.motion import InputError, Order, RecorderState, RestartHere, Sample
 from app.outputs.recorder import Recorder
@@ -48,14 +49,14 @@ async def _fill(source: Source, recorder: Recorder, seconds: float | None) -> No
 
 
 async def _take(source: Source, recorder: Recorder) -> None:
-    taken = 0
+    taken, corrections = 0, Corrections(lambda: source.info)
     async for item in source:
         taken += 1
         if isinstance(item, RestartHere):
             recorder.order(taken, Order(item, "replay", 0))
             recorder.start(Start(START, START, False))
         elif isinstance(item, Sample):
-            recorder.sample(item)
+            recorder.sample(corrections.apply(item))
             while source.replay and recorder.waiting > 10_000:  # as fast as possible is as fast as the disk
                 await asyncio.sleep(0.01)
         if not recorder.on:

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from app import calibrations
-from app.calibration.words import Calibration
-from app.motion import InputError, SourceInfo
+from app.calibration.words import Calibration, Correction
+from app.motion import InputError, Sample, SourceInfo
 
 KEY = "serial:/dev/ttyUSB0 left"
 
@@ -79,3 +79,13 @@ def test_recordings_are_left_as_they_were_recorded() -> None:
     assert calibrations.meant_for(SourceInfo("serial:x", "GX1"))
     assert calibrations.meant_for(SourceInfo("sim:walk", "simulator", duration_s=3.0))
     assert not calibrations.meant_for(SourceInfo("walk.mcap", "Stridescope recording", duration_s=3.0))
+
+
+def test_a_source_s_samples_are_corrected_from_the_first_on() -> None:
+    info = SourceInfo("serial:/dev/ttyUSB0", "GX1")
+    sample = Sample("left", 0, 0, 0, (0.5, 0.0, -9.8), (0.0, 0.0, 0.0))
+    calibrations.save(Calibration(KEY, "2026-11-22", "fit", Correction((0.5, 0.0, 0.0))))
+    corrections = calibrations.Corrections(lambda: info)
+    assert corrections.apply(sample).specific_force_b == (0.0, 0.0, -9.8)
+    other = sample._replace(sensor="right")
+    assert corrections.apply(other) is other
