@@ -18,6 +18,9 @@ from app.studies.monte_carlo import WalkConfig, walk_many
 from app.studies.words import Task
 from app.workers import run_all
 
+#: Compiling beside other work takes minutes.
+pytestmark = pytest.mark.timeout(600)
+
 ROOT = Path(__file__).parent.parent
 CONFIG = WalkConfig(walks=1, strides=40)
 TASKS = [Task(walk_many, (CONFIG, CONFIG.noise(1.0), 40, 0, range(k, k + 4))) for k in range(0, 160, 4)]

@@ -12,6 +12,9 @@ from app.__main__ import main
 from app.formats.plain import encode
 from app.simulate.walk import make_walk
 
+#: Compiling beside other work takes minutes.
+pytestmark = pytest.mark.timeout(600)
+
 
 @pytest.fixture(scope="module")
 def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:

@@ -10,6 +10,9 @@ import pytest
 from app.__main__ import main
 from app.studies.catalogue import STUDIES
 
+#: Compiling beside other work takes minutes.
+pytestmark = pytest.mark.timeout(600)
+
 CONTRACT = {"study", "item", "printed", "got", "unit", "verdict", "why"}
 VERDICTS = {"reproduced", "close", "not reproduced", "no data"}
 

@@ -12,6 +12,9 @@ import pytest
 from app.studies.words import Task
 from app.workers import cores, run_all, run_task
 
+#: Compiling beside other work takes minutes.
+pytestmark = pytest.mark.timeout(600)
+
 
 def draw(seed: int) -> float:
     return float(np.random.default_rng(seed).normal())

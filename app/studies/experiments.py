@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.estimator.tracker import track
-from app.motion import ATTITUDE, POSITION, Floats
+from app.motion import ATTITUDE, POSITION, Floats, Ints
 from app.settings import Settings
 from app.studies import thesis
 from app.studies.legs import Leg, Sensor, walk_legs
@@ -39,11 +39,12 @@ class Walked(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """A case by every method, and the paths [n, 2] for a plot."""
+    """A case by every method; for plots the paths [n, 2] and the thesis' phase of every sample [n]."""
 
     case: Case
     by: dict[str, Walked]
     paths: dict[str, Floats]
+    phase: Ints
 
 
 UNITS = {"distance": "m", "end": "m", "turned": "deg", "horizontal": "m", "height": "m"}
@@ -68,7 +69,7 @@ def walk_case(case: Case, sensor: Sensor, seed: int) -> Outcome:
             orientation = rows[:, ATTITUDE]
     found = thesis.walk(made.samples.matrix, orientation, case.threshold_radps, compensate=case.compensate)
     by["thesis"] = Walked(found.distance_m, found.end_n, math.degrees(found.turned_rad), found.steps)
-    return Outcome(case, by, paths)
+    return Outcome(case, by, paths, found.phase)
 
 
 def _truth(case: Case) -> Floats:

@@ -6,10 +6,12 @@ import math
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 
+import numpy as np
+
 from app.studies.experiments import Case, Outcome, path_plot, rows_of, table_of, walk_case
 from app.studies.legs import Leg, Sensor, leg
 from app.studies.verdicts import Judge
-from app.studies.words import Done, Study, Task
+from app.studies.words import Curve, Done, Plot, Study, Task
 
 QUARTER = 0.5 * math.pi
 #: Metres, steps, printed metres and thresholds.
@@ -99,6 +101,14 @@ def tasks(config: Config) -> Sequence[Task]:
     return [Task(walk_case, (case, config.sensor, config.seed + k)) for k, case in enumerate(every)]
 
 
+def phase_plot(config: Config, turn: Outcome) -> Plot:
+    """Fig. 35: the four phases of a walk with one turn."""
+    t = np.arange(len(turn.phase)) / config.sensor.rate_hz
+    curve = Curve("phase", t, turn.phase.astype(np.float64))
+    note = "0 initial (at rest for half a second or more), 1 stance, 2 swing, 3 turning swing."
+    return Plot("Fig. 35: the phases of a walk with a turn of 90°", "time, s", "phase", (curve,), note)
+
+
 def conclude(config: Config, done: Sequence[Done]) -> Study:
     """Tables 2–5 and 8–11; Figs. 26–41."""
     outcomes: list[Outcome] = [d.value for d in done]
@@ -118,6 +128,7 @@ def conclude(config: Config, done: Sequence[Done]) -> Study:
                 "Without a compass the gyro's bias bends the walk; a still start takes most of it away.",
             ),
             path_plot("Fig. 28: a circle", circle_walk),
+            phase_plot(config, next(o for o in lines if o.case.item.startswith("Table 9"))),
         ),
         (table_of("All walks", [*lines, circle_walk]),),
     )  # fmt: skip

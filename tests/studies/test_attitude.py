@@ -14,6 +14,9 @@ from app.studies.motions import MOTIONS, Sensor
 from app.studies.verdicts import Judge
 from app.studies.words import Done, Study, Verdict
 
+#: Compiling beside other work takes minutes.
+pytestmark = pytest.mark.timeout(600)
+
 
 def concluded(config: Config) -> Study:
     done = [Done(task.run(*task.arguments), 1e-3) for task in attitude.tasks(config)]

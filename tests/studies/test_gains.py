@@ -15,6 +15,9 @@ from app.studies import gains
 from app.studies.gains import GAINS_STANCE, GAINS_SWING, Config, Surface
 from app.studies.words import Done, Study, Verdict
 
+#: Compiling beside other work takes minutes.
+pytestmark = pytest.mark.timeout(600)
+
 
 @pytest.fixture(scope="module")
 def study() -> Study:

@@ -15,6 +15,9 @@ from app.studies.verdicts import Judge
 from app.studies.walks import CASES, EAST, NORTH, BiasConfig
 from app.studies.words import Done, Row, Verdict
 
+#: Compiling beside other work takes minutes.
+pytestmark = pytest.mark.timeout(600)
+
 SMALL = replace(WalkConfig(), walks=4, strides=5)
 
 
