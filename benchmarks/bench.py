@@ -15,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import accuracy, cost, decoders, door, gestures, ghost, page, start, studies
+from benchmarks import accuracy, cost, decoders, door, gestures, ghost, page, recordings, start, studies
 from benchmarks.figures import Figure, Section, table
 
 SECTIONS = {
@@ -28,6 +28,7 @@ SECTIONS = {
     "ghost": ghost.ghost,
     "page": page.page,
     "door": door.door,
+    "recordings": recordings.recordings,
     "studies": studies.studies,
 }
 
