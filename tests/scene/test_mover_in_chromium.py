@@ -1,0 +1,149 @@
+"""The town in a real Chromium: a wall without seams, a kiosk without a panel, tiles that come back."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+from playwright.sync_api import Browser, Page
+
+from app.door.access import Access
+from app.door.front import Door
+from app.motion import MotionId, Order
+from app.scene.mover_page import MoverScene
+from app.visit import Steer, Visit
+from app.visiting import Visiting
+from app.world import make_town
+from tests.scene.browsers import until
+from tests.scene.pages import PATIENCE_MS
+
+pytestmark = pytest.mark.timeout(400)
+
+TOWN = make_town()
+TILE = (600, 300)
+#: The town is there, its light map and the sky are finished, the state is shown, and nothing is left to draw.
+SETTLED = """() => {
+  const nodes = window.__viserMutable?.nodeRefFromName, drawn = window.__viserTestpoints?.rendererInfo.render;
+  const finished = (name) => {
+    let all = 0, done = 0;
+    nodes?.[name]?.traverse((o) => { if (o.material) { all++; done += o.material.userData.mover ? 1 : 0; } });
+    return all > 0 && all === done;
+  };
+  return finished("/world/town") && finished("/world/sky") && drawn.frame > 4 &&
+    document.querySelector(".mover.mv-ready") !== null;
+}"""
+
+
+class House:
+    """A scene, a door, and pages."""
+
+    def __init__(self, browser: Browser) -> None:
+        self.browser, self.orders = browser, list[Order]()
+        self.scene = MoverScene(self.orders.append, TOWN)
+        self.door = self.open_door(0)
+        self.visit = Visiting(TOWN).still(0, "")
+        self.visit = replace(self.visit, heading_rad=0.35, reason="both feet march", motion=MotionId.FORWARD)
+        self.show(self.visit)
+
+    def open_door(self, port: int) -> Door:
+        scene = self.scene
+        door = Door(
+            Access(port=port), viser_port=scene.port, rules=scene.rules, health=dict, extra_head=scene.head
+        )
+        door.start()
+        return door
+
+    def show(self, visit: Visit) -> None:
+        """Whatever the pace of words is, all is sent."""
+        self.scene._next_hud = self.scene._next_text = 0.0
+        self.scene.draw(visit)
+
+    def open(self, query: str, size: tuple[int, int]) -> Page:
+        page = self.browser.new_page(viewport={"width": size[0], "height": size[1]})
+        page.goto(f"{self.door.address}/?fixedDpr=1&{query}")
+        page.wait_for_function(SETTLED, timeout=PATIENCE_MS)
+        page.wait_for_timeout(2500)
+        return page
+
+    def close(self) -> None:
+        self.door.stop()
+        self.scene.close()
+
+
+@pytest.fixture(scope="module")
+def house(browser: Browser) -> Iterator[House]:
+    made = House(browser)
+    yield made
+    made.close()
+
+
+def pixels(page: Page) -> np.ndarray:
+    return np.asarray(Image.open(io.BytesIO(page.screenshot(timeout=PATIENCE_MS))).convert("RGB"), dtype=int)
+
+
+def test_three_tiles_are_one_wide_window(house: House, build_dir: Path) -> None:
+    tiles = []
+    for name in ("left", "centre", "right"):
+        page = house.open(f"tile={name}", TILE)
+        tiles.append(pixels(page))
+        page.close()
+    wide_page = house.open("kiosk=1", (3 * TILE[0], TILE[1]))
+    wide = pixels(wide_page)
+    wide_page.screenshot(path=build_dir / "mover_wall.png", timeout=PATIENCE_MS)
+    wide_page.close()
+    stitched = np.concatenate(tiles, axis=1)
+    assert len(np.unique(wide.reshape(-1, 3), axis=0)) > 1000  # a town, not an empty window
+    other = (stitched != wide).any(axis=2)
+    assert other.mean() < 0.002  # the last bit of long edges that a tile cuts, and of the feet's outlines
+    for seam in (TILE[0], 2 * TILE[0]):
+        assert other[:, seam - 2 : seam + 2].mean() < 0.02
+
+
+def test_a_kiosk_shows_no_panel_and_the_operator_has_one(house: House, build_dir: Path) -> None:
+    kiosk = house.open("kiosk=1", (800, 450))
+    assert not kiosk.get_by_text("Next visitor").first.is_visible()
+    assert kiosk.get_by_text("both feet march").first.is_visible()
+    kiosk.screenshot(path=build_dir / "mover_kiosk.png", timeout=PATIENCE_MS)
+    kiosk.close()
+    operator = house.open("", (1280, 760))
+    assert operator.get_by_text("Next visitor").first.is_visible()
+    assert operator.get_by_text("yaw since the action began").first.is_visible()
+    house.orders.clear()
+    operator.keyboard.down("ArrowUp")
+    operator.keyboard.down("ArrowRight")
+    until(lambda: any(o.command == Steer("fr") for o in house.orders), 30)
+    operator.keyboard.up("ArrowUp")
+    operator.keyboard.up("ArrowRight")
+    until(lambda: house.orders[-1].command == Steer(""), 30)
+    camera = """() => {
+      const c = window.__viserMutable.camera;
+      return [...c.position.toArray(), ...c.quaternion.toArray()];
+    }"""
+    before = operator.evaluate(camera)
+    operator.mouse.move(640, 500)
+    operator.mouse.down()
+    operator.mouse.move(800, 600, steps=3)
+    operator.mouse.up()
+    operator.mouse.wheel(0, 400)
+    operator.wait_for_timeout(800)
+    np.testing.assert_allclose(operator.evaluate(camera), before, atol=1e-9)
+    operator.close()
+
+
+def test_a_tile_that_lost_its_connection_comes_back(house: House) -> None:
+    page = house.open("tile=left", TILE)
+    port = house.door.access.port
+    house.door.stop()
+    page.wait_for_timeout(1500)
+    house.door = house.open_door(port)
+    said = "it has come back"
+    house.show(replace(house.visit, reason=said))
+    page.wait_for_function(
+        "(s) => document.querySelector('.mv-reason').textContent === s", arg=said, timeout=PATIENCE_MS
+    )
+    page.close()
