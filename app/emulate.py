@@ -72,9 +72,9 @@ class Emulator:
         self._line = Line(wanted.faults, wanted.seed)
         self._model: Model | None = self._made()
         self._zero_ns: int | None = None  # the source's time at which its clock was 0
-        self._free_s = 0.0
+        self._free_s = self._now_s = 0.0  # of the line, and of the newest sample: a busy machine lags
         self._under_way: deque[tuple[float, bytes]] = deque()
-        self._messages = self._bytes = self._passed_over = 0
+        self._messages = self._bytes = self._passed_over = self._unheard = 0
         self._terminal = Terminal(wanted.device, self._baud, self._receive, bool(wanted.faults.unplugs))
         self.path = self._terminal.path
 
@@ -98,6 +98,7 @@ class Emulator:
         """What left the sensor, and what the line did to it."""
         line, terminal = self._line, self._terminal
         told = {"messages": self._messages, "bytes": self._bytes, "passed_over": self._passed_over}
+        told["unheard"] = self._unheard  # while no host was there
         damage = {"lost": line.lost, "flipped": line.flipped, "strays": line.strays}
         return told | damage | {"not_fetched": terminal.overrun}
 
@@ -139,6 +140,7 @@ class Emulator:
         return [s._replace(device_q_nb=q) for s, q in zip(samples, rows, strict=True)]
 
     def _measure(self, sample: Sample, due_s: float) -> None:
+        self._now_s = due_s
         if self._model is None:
             return
         if self._zero_ns is None:
@@ -149,12 +151,13 @@ class Emulator:
         if message and self._free_s - due_s > BACKLOG_S:
             self._passed_over += 1
         elif message:
-            self._messages += 1
+            self._messages += self._terminal.hosted
+            self._unheard += not self._terminal.hosted
             self._send(message, due_s)
 
     def _receive(self, data: bytes) -> None:
         if self._model is not None and self._agrees():
-            self._send(self._model.receive(data), asyncio.get_running_loop().time())
+            self._send(self._model.receive(data), self._now_s)
 
     def _agrees(self) -> bool:
         return not self._strict or self._terminal.baud_agrees

@@ -60,6 +60,9 @@ def two_feet(clock_s: float) -> Section:
     yield Figure("bytes fed less those counted", apart, "", 0.0)
     passed = sum(each["passed_over"] + each["not_fetched"] for each in sent)
     yield Figure("measurements that the line or the host had no time for", passed, "", 0.0)
+    segments = sum(foot["segments"] - 1 for foot in told["sensors"].values())
+    unheard = sum(each["unheard"] for each in sent)
+    yield Figure("times a link was lost", segments, "", 0.0, note=f"{unheard} sent meanwhile")
 
 
 def unplugged() -> Section:
