@@ -13,6 +13,8 @@ from app.sources.source import Item, Live
 
 #: Between two looks: a burst costs one turn of the loop, not one for each sample.
 REST_S = 0.002
+#: Between chances for the rest of the loop while a slow reader works off what waits.
+BREATH = 32
 #: Nothing for so long: the link counts as lost.
 SILENT_S = 1.0
 #: A sender that can wait is made to wait here.
@@ -113,8 +115,10 @@ class Inbox(Live):
                 batch, self._waiting = self._waiting, []
                 self._woken = bool(batch)
                 self._news.clear()
-            for sample in batch:
+            for i, sample in enumerate(batch, start=1):
                 yield sample
+                if i % BREATH == 0:
+                    await asyncio.sleep(0)
             if batch:
                 await asyncio.sleep(REST_S)
             else:

@@ -39,7 +39,8 @@ class Cable:
         self.connections += 1
         there, back = await asyncio.open_connection("127.0.0.1", self._target)
         self._writers += [writer, back]
-        await asyncio.gather(self._carry(reader, back), self._carry(there, writer))
+        with suppress(asyncio.CancelledError):  # the loop ends
+            await asyncio.gather(self._carry(reader, back), self._carry(there, writer))
 
     async def _carry(self, source: asyncio.StreamReader, sink: asyncio.StreamWriter) -> None:
         with suppress(OSError):
