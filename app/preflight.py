@@ -268,6 +268,18 @@ def _apart(one: FootView, other: FootView) -> float:
     return math.hypot(one.position_n[0] - other.position_n[0], one.position_n[1] - other.position_n[1])
 
 
+def told(view: PreflightView) -> dict[str, object]:
+    """The result for machines."""
+    lines = [line._asdict() for line in view.lines]
+    return {
+        "done": view.done,
+        "good": view.good,
+        "seconds": view.seconds,
+        "feet": dict(view.names),
+        "lines": lines,
+    }
+
+
 def sentence(view: PreflightView) -> str:
     """The result in one line, for a recording's marker."""
     lines = ", ".join(f"{line.name} {line.state.value} ({line.told})" for line in view.lines)

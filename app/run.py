@@ -22,7 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from app import motion as m
-from app import profiles
+from app import preflight, profiles
 from app.before import Before
 from app.clocks import Clock, clock_for
 from app.door.access import Access
@@ -489,7 +489,7 @@ class Viewer:
         told: dict[str, object] = {"link": self._source.link.value, "taken": self._session.number}
         told["line"] = {sensor: vars(counters) for sensor, counters in self._source.counters.items()}
         checked = self._shown.preflight if self._shown else None
-        told["preflight"] = checked._asdict() if checked else None
+        told["preflight"] = preflight.told(checked) if checked else None
         return told | {"sensors": report(self._seen.health) if self._seen else {}}
 
 

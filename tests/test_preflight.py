@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Callable, Mapping
 
@@ -11,6 +12,7 @@ from app.clocks import KnownClock
 from app.health import Monitor, judge
 from app.motion import FootView, GaitPhase, Health, LineState, PreflightView, Role, Sample, Trail
 from app.preflight import Preflight, sentence
+from app.preflight import told as report
 
 G = 9.80665
 FEET = {"left": Role.LEFT, "right": Role.RIGHT}
@@ -92,6 +94,7 @@ def test_a_sound_walk_is_green_line_by_line(roles: Mapping[str, Role]) -> None:
     assert shown.good
     assert shown.seconds < 60.0
     assert "0.10 m from the start after 12.0 m (0.8 %)" in told(shown, "loop")
+    assert json.loads(json.dumps(report(shown)))["lines"][0]["state"] == "good"
     assert sentence(shown).startswith("pre-flight good: still good (gravity 9.81 m/s²")
 
 
