@@ -1,0 +1,68 @@
+"""What a page asks of the library happens beside the loop, and every trouble is a line for the person."""
+
+from __future__ import annotations
+
+import asyncio
+from pathlib import Path
+
+import pytest
+
+from app import motion as m
+from app.librarian import Librarian
+from app.settings import Settings
+from app.sources.source import Source
+from tests.formats.walks import random_samples, write
+
+GPX = '<gpx><trk><trkseg><trkpt lat="48" lon="11"/><trkpt lat="48.001" lon="11"/></trkseg></trk></gpx>'
+
+
+def asked(folder: Path, *commands: m.Play | m.Rename | m.Share) -> tuple[Librarian, list[str], list[Source]]:
+    """Each command after the one before has come to its end."""
+    said: list[str] = []
+    opened: list[Source] = []
+
+    async def ask() -> Librarian:
+        librarian = Librarian(folder, said.append, lambda spec, source: opened.append(source))
+        for command in commands:
+            librarian.take(command, Settings())
+            while librarian._errands:
+                await asyncio.sleep(0.01)
+        return librarian
+
+    return asyncio.run(ask()), said, opened
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "walk.mcap").write_bytes(write(random_samples(40)))
+    (tmp_path / "way.gpx").write_text(GPX)
+    (tmp_path / "broken.csv").write_text("t_s,foot\nnothing")
+    return tmp_path
+
+
+def test_a_recording_is_opened_with_the_settings_it_holds(folder: Path) -> None:
+    _, said, (source,) = asked(folder, m.Play("walk.mcap"))
+    assert source.info.name == "walk.mcap"
+    assert source.settings == Settings()
+    assert said[-1] == ""
+
+
+def test_a_gps_track_leaves_the_walk_where_it_is(folder: Path) -> None:
+    librarian, _, opened = asked(folder, m.Play("way.gpx"))
+    assert opened == []
+    assert librarian.reference is not None
+    assert librarian.reference.length_m == pytest.approx(111.2, abs=0.1)
+
+
+@pytest.mark.parametrize("name", ["none.mcap", "broken.csv", "../walk.mcap"])
+def test_trouble_is_one_line(folder: Path, name: str) -> None:
+    _, said, opened = asked(folder, m.Play(name))
+    assert opened == []
+    assert said[-1]
+    assert "\n" not in said[-1]
+
+
+def test_a_file_is_renamed_and_listed_so(folder: Path) -> None:
+    librarian, said, _ = asked(folder, m.Rename("walk.mcap", "stairs"))
+    assert "stairs.mcap" in {file.name for file in librarian.files}
+    assert said == ["walk.mcap is now stairs.mcap"]
