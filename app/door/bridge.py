@@ -60,7 +60,7 @@ async def join(
     """
     outward = Outward()
     ways = [
-        asyncio.create_task(_carry_in(browser, viser, admit, counters)),
+        asyncio.create_task(_carry_in(browser, viser, admit, outward, counters)),
         asyncio.create_task(_carry_out(viser, browser, outward, counters)),
         asyncio.create_task(_watch(transport, outward, counters)),
     ]
@@ -76,7 +76,11 @@ async def join(
 
 
 async def _carry_in(
-    browser: web.WebSocketResponse, viser: ClientWebSocketResponse, admit: Admit, counters: Counters
+    browser: web.WebSocketResponse,
+    viser: ClientWebSocketResponse,
+    admit: Admit,
+    outward: Outward,
+    counters: Counters,
 ) -> End:
     pace, clock = Pace(), asyncio.get_running_loop().time
     while True:
@@ -93,7 +97,8 @@ async def _carry_in(
                 counters.messages_in += 1
                 await viser.send_bytes(verdict)
         elif message.type is WSMsgType.PING:
-            await browser.pong(message.data)
+            if not outward.sending:  # who asks and does not read must not pile up answers
+                await browser.pong(message.data)
         elif message.type is not WSMsgType.PONG:
             return _end_of_browser(message, counters)
         delay_s = pace.delay_s(len(message.data), clock())
@@ -124,12 +129,14 @@ async def _watch(transport: asyncio.WriteTransport | None, outward: Outward, cou
     It comes back by itself and is shown the present; what it had not read would be the past.
     """
     clock = asyncio.get_running_loop().time
-    before, since_s = (-1, -1), clock()
+    sent, unsent, since_s = -1, 0, clock()
     while True:
         await asyncio.sleep(LOOK_SECONDS)
-        now = (outward.sent, transport.get_write_buffer_size() if transport is not None else 0)
-        if now != before or not outward.sending:
-            before, since_s = now, clock()
+        left = transport.get_write_buffer_size() if transport is not None else 0
+        took = outward.sent != sent or left < unsent
+        sent, unsent = outward.sent, left
+        if took or not outward.sending:
+            since_s = clock()
         elif clock() - since_s >= STALL_SECONDS:
             counters.closed_stalled += 1
             return End(WSCloseCode.TRY_AGAIN_LATER, b"too slow")

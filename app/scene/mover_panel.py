@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from functools import partial
 
 from app.motion import Command, GuiRule
 from app.scene import words
+from app.scene.beat import beat
 from app.scene.controls import Ask, Controls, Input
 from app.scene.hud import MOTIONS
 from app.visit import (
@@ -87,7 +89,7 @@ class MoverPanel:
 
     def show(self, visit: Visit) -> None:
         """Words and figures: at most ten times a second."""
-        self._header.show(header(visit))
+        self._header.show(header(visit) + beat(time.time()))
         self._figures.show(figures(visit))
         self._decoder.show(visit.decoder)
         for name, slider in self._sliders.items():

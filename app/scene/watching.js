@@ -13,6 +13,8 @@
   const kinds = ["pointerdown", "mousedown", "touchstart", "click", "dblclick", "beforeinput", "input", "change", "paste", "drop"];
   for (const kind of kinds) window.addEventListener(kind, hold, { capture: true, passive: false });
   window.addEventListener("keydown", (event) => event.key === "Tab" || hold(event), { capture: true });
+  const asked = new URLSearchParams(location.search);
+  if (asked.has("tile") || asked.has("kiosk")) return; // a wall shows the picture and nothing else
   document.addEventListener("DOMContentLoaded", () => {
     const sign = document.createElement("div");
     sign.id = "ss-watching";
