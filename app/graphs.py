@@ -31,6 +31,7 @@ def graph_of(store: SensorStore, foot: FootTrack) -> Graph:
     return Graph(
         t_s=begin_s + second_s * np.concatenate(times),
         statistic=table[:, RowColumn.STATISTIC].copy(),
+        threshold=table[:, RowColumn.THRESHOLD].copy(),
         swing=table[:, RowColumn.PHASE].copy(),
         speed_mps=np.linalg.norm(table[:, VELOCITY], axis=1),
         height_m=-table[:, RowColumn.DOWN],

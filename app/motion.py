@@ -254,7 +254,7 @@ class InputError(ValueError):
 
 
 class RowColumn(IntEnum):
-    """Columns of a track's rows, float64 [n, 12]: one row per sample."""
+    """Columns of a track's rows, float64 [n, 13]: one row per sample."""
 
     NORTH = 0
     EAST = 1
@@ -268,6 +268,7 @@ class RowColumn(IntEnum):
     QZ = 9
     PHASE = 10
     STATISTIC = 11
+    THRESHOLD = 12  # what the statistic is held against, in its unit
 
 
 ROW_WIDTH = len(RowColumn)
@@ -560,7 +561,8 @@ class Graph(NamedTuple):
     """The last seconds of one foot, decimated for a plot: arrays of one length."""
 
     t_s: Floats
-    statistic: Floats  # |ω|, rad/s
+    statistic: Floats  # |ω| or 0.1·√T, rad/s
+    threshold: Floats  # what it is held against
     swing: Floats  # 0 or 1
     speed_mps: Floats
     height_m: Floats

@@ -36,7 +36,7 @@ _LIFT_NS, _EPSILON, _END = int(Event.LIFT_NS), int(Event.EPSILON), int(Event.END
 
 @kernel
 def correct(rows: Floats, first_row: int, samples: Floats, event: Floats) -> None:
-    """Apply ``event`` to ``rows`` [k, 12], whose first has the number ``first_row``.
+    """Apply ``event`` to ``rows`` [k, 13], whose first has the number ``first_row``.
 
     ``samples`` [k, 10] are the same rows' samples. Rows outside the event stay untouched.
     """

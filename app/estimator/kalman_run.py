@@ -28,7 +28,7 @@ AS_RATE = 0.1
 def run(
     state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats
 ) -> tuple[int, int]:
-    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 12].
+    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 13].
 
     Stops early when ``events`` [m, 22] is full. Returns the next sample's place and the events' count.
     """
@@ -47,7 +47,8 @@ def run(
         rows[i, 0], rows[i, 1], rows[i, 2] = now.px, now.py, now.pz
         rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz
         rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = now.q0, now.q1, now.q2, now.q3
-        rows[i, 10], rows[i, 11] = now.phase, AS_RATE * now.statistic**0.5
+        rows[i, 10] = now.phase
+        rows[i, 11], rows[i, 12] = AS_RATE * now.statistic**0.5, AS_RATE * now.threshold**0.5
         if happened & s.REPORTED:
             write_event(events[count], now, happened)
             count += keep_event(events[count], rows[: i + 1], samples[: i + 1], state)
@@ -87,7 +88,7 @@ def keep_event(event: Floats, rows: Floats, samples: Floats, state: Record) -> i
 
 @kernel
 def correct(rows: Floats, first_row: int, samples: Floats, event: Floats, state: Record) -> None:
-    """Apply ``event`` to ``rows`` [k, 12], whose first has the number ``first_row``.
+    """Apply ``event`` to ``rows`` [k, 13], whose first has the number ``first_row``.
 
     ``samples`` [k, 10] are the same rows' samples, ``state`` is as the event left it. Rows outside the
     event stay untouched.

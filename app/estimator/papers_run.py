@@ -15,7 +15,7 @@ from app.motion import Floats
 def run(
     state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats
 ) -> tuple[int, int]:
-    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 12].
+    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 13].
 
     Stops early when ``events`` [m, 22] is full. Returns the next sample's place and the events' count.
     """
@@ -35,7 +35,7 @@ def run(
         rows[i, 0], rows[i, 1], rows[i, 2] = now.px + now.sx, now.py + now.sy, now.pz + now.sz
         rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz
         rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = now.q0, now.q1, now.q2, now.q3
-        rows[i, 10], rows[i, 11] = now.phase, now.statistic
+        rows[i, 10], rows[i, 11], rows[i, 12] = now.phase, now.statistic, now.threshold_radps
         if happened & s.REPORTED:
             write_event(events[count], now, happened)
             count += keep_event(events[count], rows[: i + 1], samples[: i + 1])

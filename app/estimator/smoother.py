@@ -63,7 +63,8 @@ def forward(
         rows[i, 0], rows[i, 1], rows[i, 2] = now.px, now.py, now.pz
         rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz
         rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = now.q0, now.q1, now.q2, now.q3
-        rows[i, 10], rows[i, 11] = now.phase, AS_RATE * now.statistic**0.5
+        rows[i, 10] = now.phase
+        rows[i, 11], rows[i, 12] = AS_RATE * now.statistic**0.5, AS_RATE * now.threshold**0.5
         write_trace(trace[i], now, happened)
         covariances[i] = now.P
         if happened & s.STRIDE:

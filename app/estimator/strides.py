@@ -33,7 +33,7 @@ def turned(contact: Contact, angle_rad: float) -> Contact:
 
 
 def stride_to(before: Contact, rows: Floats, event: Floats, number: int, risen_m: float) -> Stride:
-    """The stride from the footprint ``before`` to the contact, the last of ``rows`` [k, 12].
+    """The stride from the footprint ``before`` to the contact, the last of ``rows`` [k, 13].
 
     ``event`` is the zero-velocity update that ended it. ``rows`` begin at the lift, or where their block
     does; ``risen_m`` is the lift of the rows before them. Where no contact precedes it in its segment,
@@ -75,7 +75,7 @@ def wrapped(angle_rad: float) -> float:
 
 @kernel
 def lift_above_line(rows: Floats, event: Floats) -> float:
-    """How far the sensor rises above the straight line from lift to contact: rows [k, 12] of one swing.
+    """How far the sensor rises above the straight line from lift to contact: rows [k, 13] of one swing.
 
     The line is taken over the horizontal way covered, so that a stair's own height is not lift.
     """

@@ -16,7 +16,7 @@ STRIDES = "foot,start_s,end_s,length_m,duration_s,swing_s,stance_s,lift_m,turn_d
 
 
 class FootTable(NamedTuple):
-    """One foot's result: ``t_s`` [n] from the recording's first sample, rows [n, 12], strides."""
+    """One foot's result: ``t_s`` [n] from the recording's first sample, rows [n, 13], strides."""
 
     foot: str
     t_s: Floats

@@ -22,6 +22,8 @@ POINTS = 200
 SPAN_S = 10.0
 HEIGHT_PX = 138
 THRESHOLD: Rgb = (222, 90, 80)
+RATE = "|ω|, rad/s (dashed Ω_th, shaded swing)"
+STATISTIC = "0.1·√T, rad/s (dashed threshold, shaded swing)"
 #: Which graphs there are.
 WALK, TRUE_WALK, PENDULUM = ("speed", "height"), ("speed", "height", "error"), ("tilt", "tilt error")
 NAMES = {Role.LEFT: "left", Role.RIGHT: "right", Role.FOOT: "", Role.OTHER: "sensor"}
@@ -74,10 +76,11 @@ class Graphs:
         for plot, _ in self._plots:
             plot.remove()
         sensors = [f.sensor for f in feet]
-        rate = _rate_plot if estimator == "papers" else _statistic_plot
-        columns = _rate_columns if estimator == "papers" else _statistic_columns
+        title = RATE if estimator == "papers" else STATISTIC
         with self._container:
-            self._plots = [(rate(self._gui, roles), partial(columns, sensors))] if feet else []
+            self._plots = (
+                [(_judged_plot(self._gui, title, roles), partial(_judged_columns, sensors))] if feet else []
+            )
             for name in kind if feet else ():
                 make, values = MORE[name]
                 self._plots.append((make(self._gui, roles), partial(values, sensors)))
@@ -111,13 +114,9 @@ def _columns(sensors: list[str], column: str, snapshot: Snapshot, t_s: Floats) -
     return tuple(on_axis(t_s, snapshot.graphs[s], column) for s in sensors if s in snapshot.graphs)
 
 
-def _statistic_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
-    return (*_columns(sensors, "swing", snapshot, t_s), *_columns(sensors, "statistic", snapshot, t_s))
-
-
-def _rate_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
-    threshold = np.full(len(t_s), snapshot.main.settings.threshold_radps)
-    return (*_statistic_columns(sensors, snapshot, t_s), threshold)
+def _judged_columns(sensors: list[str], snapshot: Snapshot, t_s: Floats) -> Columns:
+    parts = ("swing", "statistic", "threshold")
+    return tuple(column for part in parts for column in _columns(sensors, part, snapshot, t_s))
 
 
 def _lines(roles: Sequence[Role], width: float = 1.6) -> list[uplot.Series]:
@@ -137,16 +136,20 @@ def _phases(roles: Sequence[Role]) -> list[uplot.Series]:
     ]  # fmt: skip
 
 
-def _statistic_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
-    """The Kalman filter's detector: its threshold follows the gait, so no line stands for it."""
-    return _add(gui, "0.1·√T, rad/s (shaded swing)", [*_phases(roles), *_lines(roles)])
-
-
-def _rate_plot(gui: viser.GuiApi, roles: Sequence[Role]) -> viser.GuiUplotHandle:
-    """|ω| and Ω_th; swing is the shaded ground behind."""
+def _thresholds(roles: Sequence[Role]) -> list[uplot.Series]:
     hidden = uplot.Series_Points(show=False)
-    threshold = uplot.Series(label="Ω_th", stroke=css(THRESHOLD), width=1.4, dash=(6, 4), points=hidden)
-    return _add(gui, "|ω|, rad/s (dashed Ω_th, shaded swing)", [*_phases(roles), *_lines(roles), threshold])
+    return [
+        uplot.Series(
+            label=f"threshold {NAMES[r]}".strip(), width=1.4, dash=(6, 4), points=hidden,
+            stroke=css(FOOT[r] if len(roles) > 1 else THRESHOLD),
+        )
+        for r in roles
+    ]  # fmt: skip
+
+
+def _judged_plot(gui: viser.GuiApi, title: str, roles: Sequence[Role]) -> viser.GuiUplotHandle:
+    """What the detector judges by and its threshold, which may follow the gait; swing is shaded behind."""
+    return _add(gui, title, [*_phases(roles), *_lines(roles), *_thresholds(roles)])
 
 
 def _plot(gui: viser.GuiApi, title: str, roles: Sequence[Role]) -> viser.GuiUplotHandle:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from app.estimator.tracker import Tracker
-from app.motion import Floats, Samples
+from app.motion import ROW_WIDTH, Floats, Samples
 from app.rotation import yaw_of
 from app.settings import Settings
 from tests.estimator.walks import G, estimate, foot, rows_of, samples_of, still, table_of, walk, without
@@ -241,5 +241,5 @@ def test_uneven_stamps_are_integrated_as_stamped() -> None:
 
 def test_one_sample_is_a_walk_of_one_row() -> None:
     tracker = estimate(still(0.01))
-    assert rows_of(tracker).shape == (1, 12)
+    assert rows_of(tracker).shape == (1, ROW_WIDTH)
     assert not tracker.levelled

@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from app.blocks import BLOCK, Blocks
 from app.estimator.tracker import Tracker
-from app.motion import SAMPLE_WIDTH, Floats, Samples
+from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples
 from app.settings import Settings
 from tests.estimator.walks import PAPERS, estimate, foot, rows_of, still, table_of, walk, without
 
@@ -153,7 +153,7 @@ def test_gravity_set_after_old_samples_are_gone_holds() -> None:
 
 def test_rows_before_settled_end_never_change() -> None:
     tracker, table = Tracker(PAPERS), Blocks(SAMPLE_WIDTH)
-    seen = np.empty((0, 12))
+    seen = np.empty((0, ROW_WIDTH))
     for i in range(3000):
         table.extend(LONG.matrix[i : i + 1])
         tracker.advance(table)

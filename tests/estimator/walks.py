@@ -28,7 +28,7 @@ def foot(query: str = "", number: int = 0) -> Samples:
 
 
 def rows_of(tracker: Tracker) -> Floats:
-    """All rows still there, a copy [n, 12]."""
+    """All rows still there, a copy [n, 13]."""
     return tracker.rows.table(tracker.rows.start, tracker.rows.end)
 
 

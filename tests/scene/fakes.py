@@ -101,7 +101,7 @@ def graph(t_s: float, ahead_s: float = 0.0) -> Graph:
     )
     speed = np.where(active, 4.6 * np.sin(np.pi * np.clip(swing, 0, 1)) ** 2, 0.0)
     height = np.array([-pose(t)[0][2] for t in walked])
-    return Graph(at, rate, active.astype(float), speed, height)
+    return Graph(at, rate, np.full(len(at), 1.35), active.astype(float), speed, height)
 
 
 def snapshot(

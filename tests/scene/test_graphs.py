@@ -31,7 +31,7 @@ def test_the_phase_stays_nought_or_one() -> None:
 
 def test_no_samples_yet() -> None:
     nothing = fakes.graph(1.0)._replace(
-        **dict.fromkeys(("t_s", "statistic", "swing", "speed_mps", "height_m"), np.zeros(0))
+        **dict.fromkeys(("t_s", "statistic", "threshold", "swing", "speed_mps", "height_m"), np.zeros(0))
     )
     t_s = graphs.times([nothing])
     assert (np.diff(t_s) > 0).all()
@@ -48,14 +48,14 @@ def test_graphs_are_made_anew_for_other_feet(scene: Scene) -> None:
     assert [len(plot.data) for plot in drawn] == [4, 2, 2]
     scene._next_graph = 0.0
     scene.draw(fakes.snapshot(5.0, two=True), fakes.status())
-    assert [len(plot.data) for plot, _ in scene.panel._graphs._plots] == [6, 3, 3]
+    assert [len(plot.data) for plot, _ in scene.panel._graphs._plots] == [7, 3, 3]
     assert all(plot._impl.removed for plot in drawn)
 
 
-def test_the_threshold_is_the_main_tracks(scene: Scene) -> None:
+def test_the_threshold_is_drawn_as_it_was(scene: Scene) -> None:
     scene.draw(fakes.snapshot(5.0), fakes.status())
-    rate = scene.panel._graphs._plots[0][0]
-    assert set(rate.data[-1]) == {fakes.snapshot(5.0).main.settings.threshold_radps}
+    judged = scene.panel._graphs._plots[0][0]
+    assert set(judged.data[-1]) == set(fakes.graph(5.0).threshold)
 
 
 def test_the_first_graph_says_what_its_estimator_judges_by(scene: Scene) -> None:

@@ -7,6 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from app.motion import ROW_WIDTH
 from app.studies import walks
 from app.studies.catalogue import STUDIES
 from app.studies.late_start import SHORT, shortfall_m
@@ -74,7 +75,7 @@ def test_how_the_walks_are_shared_out_changes_no_bit() -> None:
 def test_a_missed_stride_is_no_number() -> None:
     config = replace(SMALL, threshold_radps=15.0)
     matrix, _ = ideal(config, 5)
-    found = footprints(matrix, config.settings, 5, np.empty((len(matrix), 12)))
+    found = footprints(matrix, config.settings, 5, np.empty((len(matrix), ROW_WIDTH)))
     assert np.isnan(found).all()
 
 
