@@ -76,6 +76,7 @@ class _Points:
         self.title = ""
         self._name, self._path = name, [""]
         self._count = 0
+        self._named = False  # a second track's name is not added to the first's
 
     def refuse(self, *_: object) -> None:
         raise InputError(f"{self._name}: it declares a document type, expected plain GPX")
@@ -100,10 +101,16 @@ class _Points:
         return latitude, longitude
 
     def end(self, tag: str) -> None:
-        self._path.pop()
+        left = self._path.pop()
+        self._named = self._named or (left == "name" and bool(self.title))
 
     def text(self, data: str) -> None:
-        if self._path[-1] == "name" and self._path[-2] in ("trk", "rte") and len(self.title) < 100:
+        if (
+            not self._named
+            and self._path[-1] == "name"
+            and self._path[-2] in ("trk", "rte")
+            and len(self.title) < 100
+        ):
             self.title = (self.title + data)[:100]
 
 

@@ -39,6 +39,12 @@ def test_magnetic_north_east_of_true_north_turns_the_track_to_the_left() -> None
     )
 
 
+def test_the_first_tracks_name_is_the_name() -> None:
+    point = '<trkseg><trkpt lat="48" lon="11"/></trkseg>'
+    tracks = "".join(f"<trk><name>{name}</name>{point}</trk>" for name in ("left", "right"))
+    assert gpx.read("x", f"<gpx>{tracks}</gpx>".encode()).name == "left"
+
+
 def test_pieces_stay_apart_and_lengths_add_up() -> None:
     point = '<trkpt lat="48.{}" lon="11"/>'
     pieces = "".join(f"<trkseg>{point.format('000')}{point.format('001')}</trkseg>" for _ in range(2))
