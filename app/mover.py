@@ -38,6 +38,7 @@ from app.world import make_town
 log = logging.getLogger(__name__)
 
 FRAME_S = 1 / 60
+AWAY_S = 0.004
 MESSAGE_S = 6.0
 #: The walk that OSC calls 1.
 FULL_MPS = 2.0
@@ -252,7 +253,9 @@ class Mover:
                 if self._message_until and now_ns * 1e-9 > self._message_until:
                     self._say("")
                 self._visit = visit = self._visiting.step(now_ns)
-                scene.draw(visit)
+                scene.move(visit)
+                await asyncio.sleep(AWAY_S)  # viser's thread sends the pose before words keep it waiting
+                scene.tell(visit)
                 self._send(now_ns * 1e-9)
             except Exception:
                 log.exception("drawing failed")

@@ -15,7 +15,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import accuracy, cost, decoders, door, gestures, ghost, page, recordings, start, studies
+from benchmarks import accuracy, cost, decoders, door, gestures, ghost, page, recordings, start, studies, town
 from benchmarks.figures import Figure, Section, table
 
 SECTIONS = {
@@ -30,6 +30,7 @@ SECTIONS = {
     "door": door.door,
     "recordings": recordings.recordings,
     "studies": studies.studies,
+    "town": town.town,
 }
 
 

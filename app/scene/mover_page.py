@@ -47,11 +47,19 @@ class MoverScene:
 
     def draw(self, visit: Visit) -> None:
         """Make every browser show this; cheap for what has not changed."""
+        self.move(visit)
+        self.tell(visit)
+
+    def move(self, visit: Visit) -> None:
+        """Only the place: away at once."""
         pose = in_view(visit.north, visit.east, visit.heading_rad, visit.eye_m)
         if pose != self._pose:
             self._pose = pose
             private.force_pose(self._world, *pose)
             self._server.flush()
+
+    def tell(self, visit: Visit) -> None:
+        """Words, figures and graphs, each at its own pace."""
         now = time.monotonic()
         if now >= self._next_hud:
             self._next_hud = now + HUD_S
