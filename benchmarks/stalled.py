@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-import socket
 import threading
 import time
 from typing import NamedTuple
@@ -51,28 +50,25 @@ def watch(clock_s: float) -> Stalled:
         wait_for_samples(port, 400)
         readers = [Reader(port, clock_s) for _ in range(GOOD)]
         came, began = int(health(port)["taken"]), time.monotonic()
-        rss, silent = [rss_bytes(viewer.pid)], deaf(port)
+        rss, silent = [rss_bytes(viewer.pid)], [deaf(port)]
         while time.monotonic() < began + clock_s:
             time.sleep(LOOK_S)
             rss.append(rss_bytes(viewer.pid))
-            silent = again(silent, port)
+            if let_go(port) == len(silent):  # it does not notice itself: it reads nothing
+                silent.append(deaf(port))
         taken, clock_s = int(health(port)["taken"]) - came, time.monotonic() - began
-        let_go = int(re.findall(rb'door_closed_total\{why="stalled"\} (\d+)', get(port, "/metrics")[1])[0])
+        gone = let_go(port)
         for reader in readers:
             reader.join()
-        silent.close()
+        for connection in silent:
+            connection.close()
     frames = sum(reader.frames for reader in readers) / GOOD / clock_s
-    return Stalled(taken / clock_s / RATE_HZ, rss, [reader.gap_s for reader in readers], frames, let_go)
+    return Stalled(taken / clock_s / RATE_HZ, rss, [reader.gap_s for reader in readers], frames, gone)
 
 
-def again(silent: socket.socket, port: int) -> socket.socket:
-    """The deaf browser; when it was let go, another. It looks at nothing but whether it is still wanted."""
-    try:
-        silent.send(b"\x89\x80mask")  # a ping
-    except OSError:
-        silent.close()
-        return deaf(port)
-    return silent
+def let_go(port: int) -> int:
+    """How many browsers were let go for taking nothing."""
+    return int(re.findall(rb'door_closed_total\{why="stalled"\} (\d+)', get(port, "/metrics")[1])[0])
 
 
 class Reader(threading.Thread):
