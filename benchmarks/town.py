@@ -7,12 +7,11 @@ import time
 from pathlib import Path
 
 from benchmarks import latency
-from benchmarks.client import Client
+from benchmarks.client import Client, health
 from benchmarks.figures import Figure, Section
 from benchmarks.latency import Arrival, Latency
 from benchmarks.page import read_websocket, through_bare
 from benchmarks.processes import first_line, free_port, running
-from benchmarks.start import health
 
 SECONDS = 12.0
 NODE = "/world"

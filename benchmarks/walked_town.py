@@ -25,7 +25,7 @@ def main() -> None:
         decided.append((visit.t_s * 1e9, *position, *wxyz))
         move(scene, visit)
 
-    MoverScene.move = logged  # type: ignore[method-assign]
+    MoverScene.move = logged  # type: ignore[method-assign,assignment]
     stridescope(["mover", "--no-open", "--port", port])
     np.savez(file, samples=np.array(decided))
 
