@@ -1,4 +1,4 @@
-// The town mode's camera: held still, wide as the window or a tile of a wall; keys to the server.
+// The town mode's camera: held still, wide as the window or as the wall it is a tile of; keys to the server.
 const mover = MOVER_TOLD;
 (() => {
   const asked = new URLSearchParams(location.search);
@@ -18,30 +18,41 @@ const mover = MOVER_TOLD;
 
   // The whole picture in pixels, and where this window lies in it.
   mover.frame = () => {
-    const canvas = viewer()?.canvas;
+    const canvas = viewer()?.canvas, t = mover.tile;
+    if (t) {
+      const w = innerWidth, h = innerHeight;
+      return { left: 0, top: 0, w, h, W: w * t.columns, H: h * t.rows, x: w * t.column, y: h * t.row };
+    }
     const box = canvas ? canvas.getBoundingClientRect() : { left: 0, top: 0, width: innerWidth, height: innerHeight };
-    const t = mover.tile ?? { column: 0, row: 0, columns: 1, rows: 1 };
     const w = Math.round(box.width), h = Math.round(box.height);
-    return { left: box.left, top: box.top, w, h, W: w * t.columns, H: h * t.rows, x: w * t.column, y: h * t.row };
+    return { left: box.left, top: box.top, w, h, W: w, H: h, x: 0, y: 0 };
   };
   const viewer = () => window.__viserMutable;
 
-  // Off-axis: every tile looks from the same eye through its own part of one window.
+  // A tile draws the whole picture and shows its own part of it: every pixel is the one that a single window
+  // would have. A frustum of its own would round the corners of triangles otherwise.
+  function spread(f) {
+    const frame = viewer()?.canvas?.parentElement?.parentElement;
+    if (!mover.tile || !frame) return;
+    const style = `position:fixed;left:${-f.x}px;top:${-f.y}px;width:${f.W}px;height:${f.H}px;overflow:hidden`;
+    if (frame.dataset.mover === style) return;
+    frame.dataset.mover = style;
+    frame.style.cssText = style;
+  }
+
   function hold() {
     const v = viewer(), camera = v?.camera;
     if (!camera) return;
     const f = mover.frame();
     if (!f.w || !f.h) return;
+    spread(f);
     const aspect = f.W / f.H, most = (2 * Math.atan(Math.tan((52 * Math.PI) / 180) / aspect) * 180) / Math.PI;
-    const fov = Math.min(mover.fov, most), view = camera.view;
-    const same = camera.manual && camera.fov === fov && camera.aspect === aspect && view && view.enabled &&
-      view.fullWidth === f.W && view.fullHeight === f.H && view.offsetX === f.x && view.offsetY === f.y &&
-      view.width === f.w && view.height === f.h;
-    if (same) return;
+    const fov = Math.min(mover.fov, most);
+    if (camera.manual && camera.fov === fov && camera.aspect === aspect) return;
     camera.manual = true;
     camera.fov = fov;
     camera.aspect = aspect;
-    camera.setViewOffset(f.W, f.H, f.x, f.y, f.w, f.h);
+    camera.updateProjectionMatrix();
     v.requestRender?.();
   }
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import threading
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
@@ -48,7 +49,14 @@ class House:
         self.door = self.open_door(0)
         self.visit = Visiting(TOWN).still(0, "")
         self.visit = replace(self.visit, heading_rad=0.35, reason="both feet march", motion=MotionId.FORWARD)
-        self.show(self.visit)
+        self._beating = threading.Event()
+        self._heart = threading.Thread(target=self._beat, daemon=True)
+        self._heart.start()
+
+    def _beat(self) -> None:
+        """As the program does: a page that hears nothing would say STALE."""
+        while not self._beating.wait(0.3):
+            self.show(self.visit)
 
     def open_door(self, port: int) -> Door:
         scene = self.scene
@@ -71,6 +79,8 @@ class House:
         return page
 
     def close(self) -> None:
+        self._beating.set()
+        self._heart.join()
         self.door.stop()
         self.scene.close()
 
@@ -83,7 +93,10 @@ def house(browser: Browser) -> Iterator[House]:
 
 
 def pixels(page: Page) -> np.ndarray:
-    return np.asarray(Image.open(io.BytesIO(page.screenshot(timeout=PATIENCE_MS))).convert("RGB"), dtype=int)
+    return np.asarray(
+        Image.open(io.BytesIO(page.screenshot(timeout=PATIENCE_MS, animations="disabled"))).convert("RGB"),
+        dtype=int,
+    )
 
 
 def test_three_tiles_are_one_wide_window(house: House, build_dir: Path) -> None:
@@ -98,10 +111,7 @@ def test_three_tiles_are_one_wide_window(house: House, build_dir: Path) -> None:
     wide_page.close()
     stitched = np.concatenate(tiles, axis=1)
     assert len(np.unique(wide.reshape(-1, 3), axis=0)) > 1000  # a town, not an empty window
-    other = (stitched != wide).any(axis=2)
-    assert other.mean() < 0.002  # the last bit of long edges that a tile cuts, and of the feet's outlines
-    for seam in (TILE[0], 2 * TILE[0]):
-        assert other[:, seam - 2 : seam + 2].mean() < 0.02
+    assert np.count_nonzero((stitched != wide).any(axis=2)) == 0
 
 
 def test_a_kiosk_shows_no_panel_and_the_operator_has_one(house: House, build_dir: Path) -> None:
@@ -142,8 +152,9 @@ def test_a_tile_that_lost_its_connection_comes_back(house: House) -> None:
     page.wait_for_timeout(1500)
     house.door = house.open_door(port)
     said = "it has come back"
-    house.show(replace(house.visit, reason=said))
+    before, house.visit = house.visit, replace(house.visit, reason=said)
     page.wait_for_function(
         "(s) => document.querySelector('.mv-reason').textContent === s", arg=said, timeout=PATIENCE_MS
     )
+    house.visit = before
     page.close()
