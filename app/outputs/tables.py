@@ -48,7 +48,7 @@ def trajectory_lines(feet: Sequence[FootTable]) -> Iterable[str]:
     )
     rows = np.concatenate([foot.rows for foot in feet]) if feet else np.empty((0, len(RowColumn)))
     for i in np.argsort(times, kind="stable").tolist():
-        *numbers, phase, _ = rows[i].tolist()
+        *numbers, phase = rows[i, : RowColumn.PHASE + 1].tolist()
         name = GaitPhase(int(phase)).name.lower()
         yield f"{times[i]:.9f},{feet[int(which[i])].foot},{','.join(map(repr, numbers))},{name}"
 

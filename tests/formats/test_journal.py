@@ -23,6 +23,7 @@ COMMANDS = [
     m.SwapAB(),
     m.ResetHeading(),
     m.RestartHere(),
+    m.LookBack(),
 ]
 
 
