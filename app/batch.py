@@ -99,6 +99,8 @@ def process_folder(
     tasks = [Task(process_file, (path, spec.options, settings, place)) for path in files]
     done = run_all(tasks, jobs, cluster, tell)
     found = [(path.name, d.value) for path, d in zip(files, done, strict=True)]
+    if not any(isinstance(value, dict) for _, value in found):
+        raise InputError(f"{folder}: no recording among the {len(files)} files of this folder, expected one")
     return OfFolder(
         str(folder),
         tuple(value for _, value in found if isinstance(value, dict)),

@@ -71,6 +71,9 @@ def test_settings_and_what_files_do_not_say_hold_for_all(
     assert {one["settings"]["gain_stance"] for one in found["recordings"]} == {2.0}
 
 
-def test_an_empty_folder_is_no_fault(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    found = told(capsys, str(tmp_path))
-    assert (found["recordings"], found["skipped"]) == ([], [])
+def test_a_folder_without_recordings_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "notes.txt").write_text("bring shoes")
+    assert main(["process", str(tmp_path), "--json"]) == 2
+    told = capsys.readouterr()
+    assert told.out == ""
+    assert "no recording among the 1 files" in told.err

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.motion import Floats, InputError, Recording, Role, Samples, Truth
-from app.simulate import pendulum as p
+from app.simulate.pendulum import Pendulum, Swinging, read, swing
 
 SENSOR = "pendulum"
 #: Held still before it is let go, so that level can be found.
@@ -47,15 +47,13 @@ def make_pendulum(texts: Mapping[str, str]) -> HangingSensor:
     if unknown:
         raise InputError(f"sim:pendulum: unknown option {unknown[0]!r}: expected one of {', '.join(OPTIONS)}")
     values = {key: _read(key, texts.get(key), known) for key, known in OPTIONS.items()}
-    pendulum = p.Pendulum(values["length_m"], damping=values["damping"], start_deg=values["start_deg"])
-    swings = p.swing(pendulum, values["duration_s"])
+    pendulum = Pendulum(values["length_m"], damping=values["damping"], start_deg=values["start_deg"])
+    swings = swing(pendulum, values["duration_s"])
 
-    def motion(t_s: Floats) -> p.Swinging:
+    def motion(t_s: Floats) -> Swinging:
         free = t_s >= HELD_S
         moved = swings(np.maximum(t_s - HELD_S, 0.0))
-        return p.Swinging(
-            moved.angle, np.where(free, moved.rate, 0.0), np.where(free, moved.acceleration, 0.0)
-        )
+        return Swinging(moved.angle, np.where(free, moved.rate, 0.0), np.where(free, moved.acceleration, 0.0))
 
     def truth(sensor: str, t_s: Floats) -> tuple[Floats, Floats]:
         angle = motion(t_s).angle
@@ -64,7 +62,7 @@ def make_pendulum(texts: Mapping[str, str]) -> HangingSensor:
         return position_n, np.stack([np.cos(angle / 2), nothing, np.sin(angle / 2), nothing], axis=1)
 
     t_s = np.arange(int(values["duration_s"] * values["rate_hz"])) / values["rate_hz"]
-    matrix = p.read(pendulum, motion, t_s)
+    matrix = read(pendulum, motion, t_s)
     samples = Samples(SENSOR, Role.OTHER, 0, matrix, np.zeros(len(matrix), np.uint16))
     spec = "sim:pendulum?" + "&".join(f"{key}={value:g}" for key, value in values.items())
     recording = Recording("sim:pendulum", "simulator", (samples,), spec=spec, rod_m=pendulum.length_m)

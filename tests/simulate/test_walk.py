@@ -192,4 +192,6 @@ def test_the_oracle_shares_no_code_with_what_it_judges() -> None:
         if isinstance(node, ast.ImportFrom) and node.module and node.module.startswith("app.")
     }
     assert imported
-    assert {name for name in imported if not name.startswith("app.simulate.")} == {"app.motion"}
+    # the lab's lessons name settings; a record of numbers is no oracle
+    others = {name for name in imported if not name.startswith("app.simulate.")}
+    assert others == {"app.motion", "app.settings"}

@@ -14,7 +14,7 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import NWU, RAD_PER_DEG, Z_UP, Maker, Taker, in_g, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
-from app.motion import Quaternion, Sample
+from app.motion import GAP_NS, Quaternion, Sample
 
 FASTEST_HZ = 400.0
 SENSORS, QUATERNION = b"/sensors", b"/quaternion"
@@ -127,7 +127,9 @@ class NgimuDecoder:
         self._maker = Maker(sensor, axes, RANGES["ngimu"], NWU)
         self._clock = DeviceClock(1, 64)
         self._arrival = ArrivalClock()
-        self._timed: bool | None = None  # whether packets tell their time: the first says it of all
+        self._timed = False  # whether packets tell their time
+        self._untimed_ns: int | None = None  # the last stamp by arrival
+        self._ahead_ns = 0  # what keeps the packets' time ahead of it
         self._orientation: Quaternion | None = None
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
@@ -168,11 +170,19 @@ class NgimuDecoder:
         return self._maker.make(device_ns, host_ns, force, rate, (mx, my, mz), 0, q)
 
     def _stamp(self, tag: int, host_ns: int) -> int | None:
-        timed = tag != _IMMEDIATELY
-        self._timed = timed if self._timed is None else self._timed
-        if timed is not self._timed:
-            return None  # one clock a stream
-        return self._clock.stamp(nanoseconds(tag), host_ns) if timed else self._arrival.stamp(host_ns)
+        """By arrival until a packet tells its time, by that from then on: one clock a stream."""
+        if tag == _IMMEDIATELY:
+            self._untimed_ns = None if self._timed else self._arrival.stamp(host_ns)
+            return self._untimed_ns
+        stamp_ns = self._clock.stamp(nanoseconds(tag), host_ns)
+        if stamp_ns is None:
+            return None
+        if (
+            not self._timed and self._untimed_ns is not None
+        ):  # never back: a gap instead
+            self._ahead_ns = max(0, self._untimed_ns + GAP_NS + 1 - stamp_ns)
+        self._timed = True
+        return stamp_ns + self._ahead_ns
 
 
 def nanoseconds(tag: int) -> int:
