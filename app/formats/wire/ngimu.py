@@ -177,9 +177,7 @@ class NgimuDecoder:
         stamp_ns = self._clock.stamp(nanoseconds(tag), host_ns)
         if stamp_ns is None:
             return None
-        if (
-            not self._timed and self._untimed_ns is not None
-        ):  # never back: a gap instead
+        if not self._timed and self._untimed_ns is not None:  # never back: a gap instead
             self._ahead_ns = max(0, self._untimed_ns + GAP_NS + 1 - stamp_ns)
         self._timed = True
         return stamp_ns + self._ahead_ns
