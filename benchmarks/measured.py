@@ -9,9 +9,9 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.io
 
-from app import batch
 from app.motion import Floats, Samples
 from app.settings import Settings
+from app.shell import batch
 from app.sources.files import load
 from benchmarks import scoring
 

@@ -8,8 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app import batch
 from app.settings import Settings
+from app.shell import batch
 from benchmarks.measured import DATA
 
 IMU_HZ, MOCAP_HZ = 204.8, 100.0

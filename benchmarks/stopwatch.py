@@ -15,12 +15,12 @@ from pathlib import Path
 
 import numpy as np
 
-from app import run
 from app.door.access import Access
 from app.motion import ATTITUDE, POSITION, Sample, Snapshot, Status
 from app.scene.page import Scene
 from app.session import Session
 from app.settings import Settings
+from app.shell import run
 from app.sources.opening import open_source
 
 WINDOW_S = 5.0

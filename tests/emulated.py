@@ -8,11 +8,11 @@ import time
 from dataclasses import dataclass, field
 from typing import Any
 
-from app.emulate import Emulator, Wanted
 from app.formats.wire import gx1_talk
 from app.formats.wire.catalogue import KINDS
 from app.formats.wire.faults import parse_faults
 from app.motion import Sample, SourceInfo
+from app.shell.emulate import Emulator, Wanted
 from app.sources.opening import open_recording, open_source
 from app.sources.spec import parse_spec
 from app.sources.timeline import Timeline

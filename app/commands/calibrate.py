@@ -30,9 +30,10 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Lead through it, show what was found, keep it for the sensor."""
-    from app import calibrate, calibrations
     from app.calibration.telling import table
     from app.calibration.words import to_json
+    from app.home import calibrations
+    from app.shell import calibrate
 
     if not 9.5 <= options.gravity <= 10.0:
         raise InputError(f"--gravity {options.gravity:g}: expected 9.5 to 10 m/s²")

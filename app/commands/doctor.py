@@ -23,7 +23,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Look, and tell."""
-    from app import doctor
+    from app.shell import doctor
 
     findings = doctor.examine(doctor.Machine(recordings=options.record, port=options.port))
     well = all(finding.state != "problem" for finding in findings)

@@ -43,7 +43,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Serve it until the source ends or Ctrl-C."""
-    from app.emulate import Wanted, emulate
+    from app.shell.emulate import Wanted, emulate
 
     if options.device not in KINDS:
         raise InputError(f"emulate {options.device!r}: expected one of {', '.join(KINDS)}")

@@ -27,15 +27,15 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """A recording in another format."""
-    from app import batch
-    from app import export as exports
+    from app.shell import batch
+    from app.shell import export as exports
 
     wish = exports.Wish(options.format, options.out, options.origin, options.declination)
     wish.place()  # before any work
     if options.format == "csv":
         files = exports.samples(options.file, wish)
     elif options.format == "html":
-        from app import film
+        from app.shell import film
 
         files = [film.share(options.file, settings_of(options), wish.path(options.file))]
     else:

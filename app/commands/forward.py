@@ -32,8 +32,8 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """Forward until the source ends or Ctrl-C."""
-    from app import forward as forwarding
     from app.outputs.forwarder import Links
+    from app.shell import forward as forwarding
 
     token = token_from(options.token_file, "--token-file", "STRIDESCOPE_TOKEN")
     if not 1 <= options.keep_mb <= 100_000:

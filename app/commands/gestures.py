@@ -18,7 +18,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """What the feet ask for in a recording."""
-    from app import batch
+    from app.shell import batch
 
     done = batch.decode_gestures(options.recording, options.decoder)
     if options.json:

@@ -17,7 +17,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """What is in a recording."""
-    from app import library
+    from app.shell import library
 
     told = library.info(options.file)
     for line in [json.dumps(told)] if options.json else library.lines(told):

@@ -31,7 +31,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """The town, until Ctrl-C."""
-    from app import mover  # the heavy imports, after --help and --version
+    from app.shell import mover  # the heavy imports, after --help and --version
 
     mover.move(
         mover.Options(

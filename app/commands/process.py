@@ -26,7 +26,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """A recording without a browser."""
-    from app import batch
+    from app.shell import batch
     from app.sources.spec import parse_spec
 
     spec = parse_spec(options.recording)
@@ -46,7 +46,7 @@ def run(options: argparse.Namespace) -> int:
 
 def run_folder(options: argparse.Namespace, spec: Spec) -> int:
     """Every recording of a folder."""
-    from app import batch
+    from app.shell import batch
 
     done = batch.process_folder(
         spec, settings_of(options), options.out, jobs_of(options), options.cluster, bar

@@ -19,7 +19,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """A source onto the disk, until it ends."""
-    from app import record as recording
+    from app.shell import record as recording
 
     if options.seconds is not None and not 0.0 < options.seconds < 1e9:
         raise InputError(f"--seconds {options.seconds:g}: expected more than 0")

@@ -17,7 +17,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """A damaged recording's whole part."""
-    from app import library
+    from app.shell import library
 
     path, made = library.recover(options.file)
     print(f"wrote {path}: {made.samples} samples, {made.messages} messages in {made.chunks} whole chunks")

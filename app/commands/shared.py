@@ -10,9 +10,9 @@ import sys
 from pathlib import Path
 from typing import NoReturn, Protocol
 
-from app import profiles
 from app.door.access import Access, Certificate, is_loopback, made_token
 from app.door.addresses import everything
+from app.home import profiles
 from app.motion import InputError
 from app.settings import Settings, parse
 

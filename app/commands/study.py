@@ -33,7 +33,7 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """The papers' studies."""
-    from app import study
+    from app.shell import study
 
     outcome = study.study(
         study.names_of(options.name), jobs_of(options), options.cluster, bar, options.recording

@@ -39,8 +39,8 @@ def add(commands: Commands) -> None:
 
 def run(options: argparse.Namespace) -> int:
     """The live page, until Ctrl-C."""
-    from app import run as viewer  # the heavy imports, after --help and --version
-    from app.shelf import track
+    from app.shell import run as viewer  # the heavy imports, after --help and --version
+    from app.shell.shelf import track
 
     if options.memory_mb < 16:
         raise InputError(f"--memory-mb {options.memory_mb}: expected 16 or more")

@@ -8,7 +8,7 @@ import pytest
 from playwright.sync_api import Browser
 
 from app.outputs.report import number, report
-from app.study import names_of, study
+from app.shell.study import names_of, study
 from tests.studies.doubles import a_study
 
 

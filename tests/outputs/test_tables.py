@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app import batch
 from app.motion import InputError
 from app.outputs import tables
 from app.settings import Settings
+from app.shell import batch
 from tests.estimator.walks import estimate, foot, rows_of
 
 HEADER = "t_s,foot,north_m,east_m,down_m,vn_mps,ve_mps,vd_mps,qw,qx,qy,qz,phase"

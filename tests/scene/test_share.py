@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from app.film import share
 from app.motion import InputError
 from app.scene.share import told
 from app.settings import Settings
+from app.shell.film import share
 from tests.scene.fakes import snapshot
 from tests.scene.pages import DRAWN, PATIENCE_MS
 

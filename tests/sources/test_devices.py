@@ -9,8 +9,8 @@ from collections.abc import AsyncIterator
 import pytest
 
 from app.__main__ import main
-from app.emulate import Emulator, Wanted
 from app.motion import Link, Role, Sample
+from app.shell.emulate import Emulator, Wanted
 from app.sources.devices import look
 from app.sources.opening import open_recording, open_source
 from app.sources.spec import parse_spec

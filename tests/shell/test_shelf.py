@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.motion import InputError
-from app.shelf import Shelf, track
+from app.shell.shelf import Shelf, track
 from tests.formats.walks import random_samples, write
 
 WALK = write(random_samples(40))

@@ -53,6 +53,6 @@ def test_info_tells_all_of_a_recording(tmp_path: Path, capsys) -> None:
 
 
 def test_info_tells_of_any_recording(capsys) -> None:
-    demo = Path(__file__).parent.parent / "recordings" / "demo.csv"
+    demo = Path(__file__).parents[2] / "recordings" / "demo.csv"
     assert main(["info", str(demo)]) == 0
     assert "plain CSV" in capsys.readouterr().out

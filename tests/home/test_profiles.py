@@ -8,7 +8,7 @@ import pytest
 from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
-from app import profiles
+from app.home import profiles
 from app.motion import InputError
 from app.settings import BUILT_IN, LIMITS, Settings
 

@@ -14,12 +14,12 @@ from typing import Any
 from app import motion as m
 from app.outputs.files import beside
 from app.settings import Settings
-from app.shelf import SHARED, TRACK, Shelf, track
+from app.shell.shelf import SHARED, TRACK, Shelf, track
 from app.sources.opening import open_source
 from app.sources.source import Source
 from app.warm import warm_up
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parent.parent.parent
 #: Between looks at the folder.
 LOOK_S = 2.0
 

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app import calibrations
-from app.before import Before
 from app.calibration.words import Calibration, Correction
+from app.home import calibrations
 from app.motion import Calibrate, CheckFirst, InputError, Link, Role, Sample, SourceInfo, Status
 from app.session import Session
 from app.settings import Settings
+from app.shell.before import Before
 from app.simulate.calibration import make_calibration
 from app.sources.timeline import Timeline
 

@@ -8,8 +8,8 @@ import signal
 from collections.abc import Callable
 from pathlib import Path
 
-from app.calibrations import Corrections
 from app.formats.journal import Start
+from app.home.calibrations import Corrections
 from app.motion import InputError, Order, RecorderState, RestartHere, Sample
 from app.outputs.recorder import Recorder
 from app.settings import BUILT_IN

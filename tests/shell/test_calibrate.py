@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app.calibrate import calibrate
 from app.commands.calibrate import Teller, bar
 from app.motion import GuideView, InputError
+from app.shell.calibrate import calibrate
 from app.simulate.calibration import make_calibration
 
 

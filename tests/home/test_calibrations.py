@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from app import calibrations
 from app.calibration.words import Calibration, Correction
+from app.home import calibrations
 from app.motion import InputError, Sample, SourceInfo
 
 KEY = "serial:/dev/ttyUSB0 left"

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 
-from app.doctor import Finding, Machine, examine
+from app.shell.doctor import Finding, Machine, examine
 
 Make = Callable[..., Machine]
 

@@ -11,10 +11,10 @@ import time
 from collections.abc import Callable
 from dataclasses import replace
 
-from app import calibrations
 from app.calibration.guide import Guide
 from app.calibration.telling import table
 from app.calibration.words import Calibration
+from app.home import calibrations
 from app.motion import (
     Calibrate,
     CalibrationView,

@@ -22,8 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from app import motion as m
-from app import preflight, profiles
-from app.before import Before
+from app import preflight
 from app.clocks import Clock, clock_for
 from app.door.access import Access
 from app.door.files import Files
@@ -31,13 +30,15 @@ from app.door.front import Door
 from app.estimator import sweep as gains
 from app.formats.journal import Start
 from app.health import report
+from app.home import profiles
 from app.launch import open_in_browser
-from app.librarian import Librarian
 from app.measures import measures
 from app.outputs.recorder import Recorder
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
+from app.shell.before import Before
+from app.shell.librarian import Librarian
 from app.simulate import lab as lessons
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource

@@ -22,7 +22,7 @@ from app.gestures.packet import decode
 from app.motion import InputError, MotionId
 from tests.scene.pages import PATIENCE_MS
 
-ROOT = Path(__file__).parent.parent
+ROOT = Path(__file__).parent.parent.parent
 PATIENCE_S = 240.0
 
 

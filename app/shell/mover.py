@@ -15,14 +15,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app import motion as m
-from app import visitors
-from app.calibrations import Corrections
 from app.clocks import Clock, LiveClock
 from app.door.access import Access
 from app.door.front import Door
 from app.gestures.packet import packet_of
 from app.gestures.steering import Comfort
 from app.gestures.words import standing
+from app.home import visitors
+from app.home.calibrations import Corrections
 from app.launch import open_in_browser
 from app.outputs.senders import AxesSender, Outlet, PacketSender
 from app.scene.mover_page import MoverScene

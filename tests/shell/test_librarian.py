@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 
 from app import motion as m
-from app.librarian import Librarian
 from app.settings import Settings
+from app.shell.librarian import Librarian
 from app.sources.source import Source
 from tests.formats.walks import random_samples, write
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 
 from app.calibration.guide import GRAVITY_MPS2, Guide
 from app.calibration.words import Calibration
-from app.calibrations import key_of
+from app.home.calibrations import key_of
 from app.motion import GuideView, InputError, Sample
 from app.sources.opening import open_source
 from app.sources.source import Source

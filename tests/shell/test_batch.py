@@ -7,9 +7,9 @@ import math
 
 import pytest
 
-from app import batch
 from app.session import Session
 from app.settings import Settings
+from app.shell import batch
 from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of
 from tests.test_session import fed, main_rows
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app import visitors
+from app.home import visitors
 from app.motion import InputError
 
 VALUES: dict[str, float | bool] = {"on_radps": 0.412, "off_radps": 0.206, "sure_rad": 0.05, "swapped": True}
