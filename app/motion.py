@@ -212,6 +212,7 @@ class Recording:
     journal: Journal | None = None  # a recording of ours
     clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # by sensor; none: one clock stamped all
     rod_m: float | None = None  # the sensor hangs on a pendulum of this length
+    serials: Mapping[str, str] = field(default_factory=dict)  # serial numbers, by sensor, where known
 
     @property
     def duration_s(self) -> float:

@@ -87,7 +87,8 @@ class Guide:
         """One sample."""
         if self.done:
             return
-        self._way.add(sample)
+        if self.legs:  # to the first pose leads no turn, however long it takes
+            self._way.add(sample)
         self._turn(sample)
         self._note_field(sample)
         self._pose = self._still.add(sample)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import contextlib
 import signal
 import time
 from collections.abc import Callable
@@ -11,12 +10,14 @@ from collections.abc import Callable
 from app.calibration.guide import GRAVITY_MPS2, Guide
 from app.calibration.words import Calibration
 from app.home.calibrations import key_of
-from app.motion import GuideView, InputError, Sample
+from app.motion import GuideView, InputError, Link, Sample
 from app.sources.opening import open_source
 from app.sources.source import Source
 
 #: Between looks at how far it is.
 LOOK_S = 0.2
+#: Between looks whether samples come at all.
+WATCH_S = 1.0
 
 Results = tuple[Calibration, Calibration]
 
@@ -47,22 +48,40 @@ def calibrate(
 
 
 async def _lead(source: Source, sensor: str | None, look: Callable[[GuideView], None]) -> Guide:
-    task = asyncio.create_task(_listen(source, sensor, look))
+    begun: list[Guide] = []
+    task = asyncio.create_task(_listen(source, sensor, look, begun))
+    watching = asyncio.create_task(_watch(source, look, begun))
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, task.cancel)
-    with contextlib.suppress(asyncio.CancelledError):
+    try:
         return await task
+    except asyncio.CancelledError:
+        pass
+    finally:
+        watching.cancel()
     raise InputError("calibration given up; nothing was saved")
 
 
-async def _listen(source: Source, sensor: str | None, look: Callable[[GuideView], None]) -> Guide:
+async def _watch(source: Source, look: Callable[[GuideView], None], begun: list[Guide]) -> None:
+    """Say what is being waited for while no samples come."""
+    while True:
+        await asyncio.sleep(WATCH_S)
+        if source.link in (Link.WAITING, Link.LOST) and source.detail:
+            look((begun[0] if begun else Guide("")).view()._replace(note=source.detail))
+
+
+async def _listen(
+    source: Source, sensor: str | None, look: Callable[[GuideView], None], begun: list[Guide]
+) -> Guide:
     guide, looked_s, step = None, 0.0, -1
     async for item in source:
         if not isinstance(item, Sample) or item.sensor != (sensor or item.sensor):
             continue
         sensor = item.sensor
-        guide = guide or Guide(key_of(source.info, sensor))
+        if guide is None:
+            guide = Guide(key_of(source.info, sensor))
+            begun.append(guide)
         guide.add(item)
         if guide.done:
             return guide

@@ -21,8 +21,9 @@ TURNS = (
     (2, 90.0), (1, 360.0), (2, -90.0), (0, 360.0), (2, 90.0),
 )  # fmt: skip
 LIMITS = {
-    "seed": (0.0, 2.0**31), "rate_hz": (20.0, 2000.0), "still_s": (0.5, 60.0), "turn_s": (0.2, 60.0),
-    "noise": (0.0, 1000.0), "sloppy_deg": (0.0, 20.0), "skew": (0.0, 0.1), "magnetometer": (0.0, 1.0),
+    "seed": (0.0, 2.0**31), "rate_hz": (20.0, 2000.0), "first_s": (0.5, 600.0), "still_s": (0.5, 60.0),
+    "turn_s": (0.2, 60.0), "noise": (0.0, 1000.0), "sloppy_deg": (0.0, 20.0), "skew": (0.0, 0.1),
+    "magnetometer": (0.0, 1.0),
 }  # fmt: skip
 _ROUND_S = 3.0  # a whole round takes so many times a turn
 
@@ -33,6 +34,7 @@ class CalibrationOptions:
 
     seed: float = 0.0
     rate_hz: float = 100.0
+    first_s: float = 20.0  # flat at the beginning: a port is found meanwhile, and somebody presses Start
     still_s: float = 3.0
     turn_s: float = 1.5
     noise: float = 1.0  # in multiples of Table II of the 2012 paper
@@ -84,7 +86,8 @@ def make_calibration(texts: Mapping[str, str]) -> Calibrating:
         readings[2][:] = math.nan
     matrix = np.column_stack([np.rint(t_s * 1e9), *readings])
     samples = Samples("foot", Role.FOOT, 0, matrix, np.zeros(len(matrix), np.uint16))
-    recording = Recording("sim:calibration", "simulator", (samples,))
+    serials = {"foot": f"SIM-{int(options.seed)}"}  # the errors are the seed's: it names the sensor
+    recording = Recording("sim:calibration", "simulator", (samples,), serials=serials)
     return Calibrating(recording, force, rate, field)
 
 
@@ -98,7 +101,8 @@ def _motion(options: CalibrationOptions, random: np.random.Generator) -> tuple[F
     """Times [n], rotations from body to room [n, 3, 3] and rates [n, 3]."""
     step = 1.0 / options.rate_hz
     start = np.eye(3)
-    poses, rates = [], []
+    poses: list[Floats] = []
+    rates: list[Floats] = []
     for axis, degrees in ((0, 0.0), *TURNS):
         slip = random.normal(0.0, options.sloppy_deg) if degrees else 0.0
         about = np.eye(3)[axis] + np.radians(random.normal(0.0, options.sloppy_deg, 3))
@@ -108,7 +112,7 @@ def _motion(options: CalibrationOptions, random: np.random.Generator) -> tuple[F
         angle = np.radians(degrees + slip)
         angles = angle * s**3 * (10.0 - 15.0 * s + 6.0 * s**2)
         speeds = angle * 30.0 * s**2 * (1.0 - s) ** 2 / length_s
-        still = round(options.still_s * options.rate_hz)
+        still = round((options.still_s if poses else options.first_s) * options.rate_hz)
         angles, speeds = np.append(angles, np.full(still, angle)), np.append(speeds, np.zeros(still))
         poses.append(start @ _about(about, angles))
         rates.append(speeds[:, np.newaxis] * about)
@@ -127,7 +131,8 @@ def _about(axis: Floats, angles: Floats) -> Floats:
 
 
 def _parse(texts: Mapping[str, str]) -> CalibrationOptions:
-    known = {f.name: f.name for f in fields(CalibrationOptions)} | {"rate": "rate_hz", "still": "still_s"}
+    known = {f.name: f.name for f in fields(CalibrationOptions)} | {"rate": "rate_hz"}
+    known |= {"first": "first_s", "still": "still_s", "turn": "turn_s"}
     values: dict[str, float] = {}
     for key, text in texts.items():
         if key not in known:

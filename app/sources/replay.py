@@ -337,6 +337,7 @@ def source_info(recording: Recording, truth: Truth | None = None) -> SourceInfo:
         duration_s=recording.duration_s,
         truth=truth,
         clocks=recording.clocks,
+        serials=recording.serials,
         rod_m=recording.rod_m,
     )
 
