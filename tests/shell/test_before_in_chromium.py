@@ -13,7 +13,7 @@ from playwright.sync_api import Browser, Page
 
 from app.simulate.calibration import make_calibration
 from tests.scene.pages import PATIENCE_MS, open_page
-from tests.test_run import Program
+from tests.shell.test_run import Program
 
 #: Eight times as fast as a hand, and around again for a page that finds the Start button late.
 HAND = "speed=8&first=40&still=2.2&turn=1&loop=1"
