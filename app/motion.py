@@ -639,7 +639,6 @@ class FootView(NamedTuple):
     footprints: tuple[Footprint, ...]  # the newest few
     error_m: float | None  # distance to the simulator's truth
     trust: Trust | None = None  # None: the estimator does not know
-    true_q_nb: Quaternion | None = None  # the simulator's truth
 
 
 class GuideView(NamedTuple):
@@ -717,6 +716,19 @@ class TrackView(NamedTuple):
     smoothed_s: float | None = None  # estimated in hindsight up to this time; None: as it was live
 
 
+class PendulumView(NamedTuple):
+    """A sensor that hangs on a rod, beside the truth, both at its newest sample; angles from the vertical."""
+
+    rod_m: float
+    q_nb: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    true_q_nb: Quaternion = (1.0, 0.0, 0.0, 0.0)
+    angle_rad: float = 0.0
+    true_rad: float = 0.0
+    worst_rad: float = 0.0  # the largest error of the last seconds
+    period_s: float | None = None  # by the estimate; None: not two swings yet
+    true_period_s: float | None = None
+
+
 class Sweep(NamedTuple):
     """What "find gains" found: closure in metres over a grid of gains."""
 
@@ -761,6 +773,7 @@ class Snapshot:
     #: estimated and true, rad: [k, 4].
     errors: Mapping[str, Floats] = field(default_factory=dict)
     own: Mapping[str, OwnView] = field(default_factory=dict)  # of sensors that tell their orientation
+    pendulum: PendulumView | None = None  # the sensor hangs on a rod: this is no walk
 
 
 class Link(StrEnum):

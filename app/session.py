@@ -15,13 +15,14 @@ from app import motion as m
 from app.blocks import BLOCK
 from app.clocks import Clock, KnownClock, LiveClock
 from app.graphs import graph_of
+from app.hanging import pendulum_view
 from app.health import Monitor, judge
 from app.own import OwnWalk
 from app.rotation import yaw_of
 from app.settings import Settings
 from app.tracks import Reestimation, SensorStore, Track
 from app.trail import TrailBuilder
-from app.truth import TruePlace, TrueWalk, errors
+from app.truth import TruePlace, TrueWalk, attitude, errors
 
 #: Applied changes kept for the page.
 CHANGES = 200
@@ -43,8 +44,11 @@ class Session:
         budget_bytes: int = DEFAULT_BUDGET,
         clock: Callable[[str], Clock] = lambda _: KnownClock(),
         epoch: int = 0,
+        rod_m: float | None = None,
     ) -> None:
         """``truth`` is a simulator's; over ``budget_bytes`` the oldest samples go; ``epoch``: the first.
+
+        ``rod_m``: the sensor hangs on a rod of this length, and does not walk.
 
         ``clock`` gives each sensor's: times that are shown are on the one they share; the estimate's are not.
         """
@@ -58,7 +62,7 @@ class Session:
         self.main = Track(f"main{epoch}", settings)
         self.candidate: Track | None = None
         self._roles = roles
-        self._truth = truth
+        self._truth, self._rod_m = truth, rod_m
         self._clock = clock
         self._clocks: dict[str, Clock] = {}  # what is known of a clock outlives a walk
         self._monitors: dict[str, Monitor] = {}
@@ -401,12 +405,22 @@ class Session:
             budget_bytes=self._budget,
             epoch=self.epoch,
             own=self._look_at_own(),
+            pendulum=self._look_at_pendulum(),
         )
 
     def _look_at_own(self) -> dict[str, m.OwnView]:
         feet, settings = self.main.feet, self.main.settings
         views = {name: own.view(feet[name].q_nb, settings) for name, own in self._own.items()}
         return {name: view for name, view in views.items() if view is not None}
+
+    def _look_at_pendulum(self) -> m.PendulumView | None:
+        if self._rod_m is None:
+            return None
+        for sensor, true in self._true.items():
+            rows, settings = self.main.feet[sensor].tracker.rows, self.main.settings
+            now = true.at([rows.end - 1], self.stores[sensor], settings)[0]
+            return pendulum_view(self._rod_m, attitude(now, rows), now.q_nb, self._errors[sensor])
+        return m.PendulumView(self._rod_m)
 
     def _look_at_truth(self) -> dict[str, TruePlace]:
         if self._truth is None:

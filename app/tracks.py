@@ -235,7 +235,6 @@ class FootTrack:
             trail=self.trail(),
             footprints=self.footprints(),
             error_m=None if true is None else error_m(true, tracker.rows),
-            true_q_nb=None if true is None else true.q_nb,
             trust=tracker.trust,
         )
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import deque
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import NamedTuple, Protocol
 
 import numpy as np
@@ -72,30 +72,37 @@ class TrueWalk:
         apart = max(1, round(times.rate_hz() / TRUTH_HZ))
         if times.samples.end - self._next > TOGETHER_S * TRUTH_HZ * apart or not self.recent:
             rows = range(max(self._next, times.samples.start), times.samples.end, apart)
-            self._add(rows, [times.time_ns(row) * 1e-9 for row in rows], settings)
+            places, newest = self._at(rows, times, settings)
+            self._builder.add(places)
+            self.recent.extend(newest)
             self._next = rows[-1] + apart
         return self.recent[-1]
+
+    def at(self, rows: Sequence[int], times: Times, settings: Settings) -> list[TruePlace]:
+        """The truth at some of the samples, at most ``KEPT``."""
+        return self._at(rows, times, settings)[1]
 
     def trail(self) -> Trail:
         """What was looked at so far."""
         return self._builder.trail(np.empty((0, 3)))
 
-    def _add(self, rows: range, t_s: list[float], settings: Settings) -> None:
+    def _at(self, rows: Sequence[int], times: Times, settings: Settings) -> tuple[Floats, list[TruePlace]]:
+        """All places [n, 3], and the newest few with how the foot was turned."""
+        t_s = [times.time_ns(row) * 1e-9 for row in rows]
         position_n, q_nb = self._truth(self._sensor, self._begin_s + np.append(0.0, t_s))
         start = 0.0 if settings.magnetometer else yaw_of(tuple(q_nb[0].tolist()))
         angle = settings.start_heading_rad - start
         turn, c, s = from_yaw(angle), math.cos(angle), math.sin(angle)
         places = (position_n[1:] - position_n[0]) @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
-        self._builder.add(places)
-        for k in range(max(0, len(rows) - KEPT), len(rows)):
-            q_true = multiply(turn, tuple(q_nb[k + 1].tolist()))
-            self.recent.append(TruePlace(rows[k], t_s[k], places[k], q_true))
+        newest = range(max(0, len(rows) - KEPT), len(rows))
+        turned = {k: multiply(turn, tuple(q_nb[k + 1].tolist())) for k in newest}
+        return places, [TruePlace(rows[k], t_s[k], places[k], turned[k]) for k in newest]
 
 
 def errors(recent: Iterable[TruePlace], rows: Blocks) -> Floats:
     """Seconds, metres from the truth, pitch of the estimate's ``rows`` [n, 12] and of the truth: [k, 4]."""
     found = [
-        (true.t_s, error_m(true, rows), pitch_of(_attitude(true, rows)), pitch_of(true.q_nb))
+        (true.t_s, error_m(true, rows), pitch_of(attitude(true, rows)), pitch_of(true.q_nb))
         for true in recent
         if rows.start <= true.row < rows.end
     ]
@@ -108,7 +115,8 @@ def error_m(true: TruePlace, rows: Blocks) -> float:
     return float(np.linalg.norm(true.position_n - block[place, POSITION]))
 
 
-def _attitude(true: TruePlace, rows: Blocks) -> Quaternion:
+def attitude(true: TruePlace, rows: Blocks) -> Quaternion:
+    """How the estimate has the foot turned there."""
     block, place = rows.block(true.row)
     w, x, y, z = block[place, ATTITUDE].tolist()
     return (w, x, y, z)

@@ -18,6 +18,7 @@ HEART = {
     "own",
     "graphs",
     "clocks",
+    "hanging",
     "health",
     "preflight",
     "blocks",

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import fields
 
 from app.motion import FootView, GaitPhase, Link, OwnView, Role, Snapshot, Status
@@ -16,9 +17,13 @@ LINKS = {
     Link.WAITING: "waiting for samples", Link.LIVE: "live", Link.PAUSED: "paused", Link.ENDED: "ended",
     Link.LOST: "connection lost",
 }  # fmt: skip
-COMPARED = (
-    ("To start", "to_start_m", 2, "m"), ("Distance", "distance_m", 2, "m"), ("Strides", "strides", 0, ""),
-)  # fmt: skip
+Compared = tuple[tuple[str, Callable[[FootView], float], int, str], ...]
+"""What a candidate is held against the main track by: name, figure, digits, unit."""
+COMPARED: Compared = (
+    ("To start", lambda foot: foot.to_start_m, 2, "m"),
+    ("Distance", lambda foot: foot.distance_m, 2, "m"),
+    ("Strides", lambda foot: foot.strides, 0, ""),
+)
 UNLINKED = '<div class="ss-note">Feet not linked: each has its own origin and start heading.</div>'
 
 
@@ -93,7 +98,7 @@ def _card(foot: FootView) -> str:
         ("of distance", words.percent(foot.to_start_m, foot.distance_m), ""),
         known or ("Walked", words.clock(foot.t_s), ""),
     ]
-    grid = "".join(_tile(*tile) for tile in tiles)
+    grid = "".join(tile(*one) for one in tiles)
     return (
         f'<div class="ss-card ss-{foot.role.value}"><div class="ss-card-head"><span class="ss-dot"></span>'
         f'{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class="ss-tiles">{grid}</div></div>'
@@ -119,7 +124,8 @@ def badge(foot: FootView) -> str:
     return f'<span class="ss-phase ss-{name}"><i>{mark}</i>{name.upper()}</span>'
 
 
-def _tile(label: str, value: str, unit: str) -> str:
+def tile(label: str, value: str, unit: str) -> str:
+    """One figure of a card."""
     small = f" <small>{unit}</small>" if unit else ""
     return f'<div class="ss-tile"><label>{label}</label><b>{value}</b>{small}</div>'
 
@@ -218,14 +224,14 @@ def _difference(limit: Limit, before: Value, after: Value) -> str:
     return f"{limit.label} {before} → {after}"
 
 
-def comparison(snapshot: Snapshot) -> str:
-    """The candidate beside the main track: closure, distance, strides.
+def comparison(snapshot: Snapshot, by: Compared = COMPARED) -> str:
+    """The candidate beside the main track, ``by`` these figures.
 
     As tall without a candidate as with one: the slider under a hand must not move away.
     """
     others = {f.sensor: f for f in snapshot.candidate.feet} if snapshot.candidate else {}
     feet = snapshot.main.feet
-    body = "".join(_compared(main, others.get(main.sensor), len(feet) > 1) for main in feet)
+    body = "".join(_compared(main, others.get(main.sensor), by, len(feet) > 1) for main in feet)
     pending = '<span class="ss-pending">re-estimating…</span>' if snapshot.pending else ""
     return (
         '<div class="ss-candidate"><div class="ss-card-head"><span class="ss-dot"></span>Candidate'
@@ -240,11 +246,11 @@ def _what(snapshot: Snapshot) -> str:
     return words.plain(differences(snapshot.main.settings, snapshot.candidate.settings), 200)
 
 
-def _compared(main: FootView, other: FootView | None, named: bool) -> str:
+def _compared(main: FootView, other: FootView | None, by: Compared, named: bool) -> str:
     head = f'<tr><th class="ss-who" colspan="4">{FEET[main.role]}</th></tr>' if named else ""
     return head + "".join(
-        f"<tr><td>{name}</td>{_cells(getattr(main, key), getattr(other, key, None), digits, unit)}</tr>"
-        for name, key, digits, unit in COMPARED
+        f"<tr><td>{name}</td>{_cells(figure(main), figure(other) if other else None, digits, unit)}</tr>"
+        for name, figure, digits, unit in by
     )
 
 

@@ -55,13 +55,13 @@ class Graphs:
         self._plots: list[tuple[viser.GuiUplotHandle, Callable[[Snapshot, Floats], Columns]]] = []
         self._drawn: object = None
 
-    def draw(self, snapshot: Snapshot, hanging: bool = False) -> None:
-        """Bring the graphs up to date; the same snapshot's graphs cost nothing. ``hanging``: a pendulum."""
+    def draw(self, snapshot: Snapshot) -> None:
+        """Bring the graphs up to date; the same snapshot's graphs cost nothing."""
         if snapshot.graphs is self._drawn:
             return
         self._drawn = snapshot.graphs
         feet = [f for f in snapshot.main.feet if f.sensor in snapshot.graphs]
-        kind = PENDULUM if hanging else TRUE_WALK if snapshot.errors else WALK
+        kind = PENDULUM if snapshot.pendulum else TRUE_WALK if snapshot.errors else WALK
         shown = (snapshot.main.settings.estimator, kind, tuple(f.role for f in feet))
         if shown != self._shown:
             self._make(feet, *shown)

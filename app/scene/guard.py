@@ -21,6 +21,11 @@ def drawable(foot: FootView | OwnView) -> bool:
     return max(map(abs, foot.position_n)) < FAR_M and _norm(foot.q_nb) > 0.5
 
 
+def is_turn(q: Quaternion) -> bool:
+    """Whether something can be turned so."""
+    return 0.5 < _norm(q) < 2.0  # a NaN is not
+
+
 def unit(q: Quaternion) -> Quaternion:
     """The quaternion at length 1: viser does not see to it."""
     norm = _norm(q)

@@ -14,7 +14,7 @@ from app.motion import (
     Sweep,
     Undo,
 )  # fmt: skip
-from app.scene import figures, private, surface
+from app.scene import figures, private, surface, swinging
 from app.scene.controls import Controls, Input
 
 
@@ -38,7 +38,8 @@ class CandidateBox:
 
     def show(self, snapshot: Snapshot) -> None:
         """As the session is."""
-        self._compared.show(figures.comparison(snapshot))
+        by = swinging.compared(snapshot.pendulum) if snapshot.pendulum else figures.COMPARED
+        self._compared.show(figures.comparison(snapshot, by))
         self._kept.show(figures.slots(snapshot))
         self._at_once.show(snapshot.apply_at_once)
 

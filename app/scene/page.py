@@ -15,10 +15,9 @@ from app.scene.follow import Glide, middle
 from app.scene.ground import Ground
 from app.scene.head import head
 from app.scene.panel import Panel
-from app.scene.pendulum import Pendulum, no_feet
 from app.scene.reference import ReferenceLine
 from app.scene.shoe import SENSOR_HEIGHT_M
-from app.scene.walkers import Walkers
+from app.scene.stage import Stage
 
 log = logging.getLogger(__name__)
 
@@ -48,8 +47,7 @@ class Scene:
             "/ned", wxyz=NED_WXYZ, position=in_view(self._glide.centre), show_axes=False
         )
         self._ground = Ground(self._server.scene, dark=True)
-        self._walkers = Walkers(self._server.scene)
-        self._pendulum: Pendulum | None = None
+        self._stage = Stage(self._server.scene)
         self._reference = ReferenceLine(self._server.scene)
         self._theme(dark=True)
         self.panel = Panel(self._controls, self._set_view, self._view)
@@ -59,12 +57,12 @@ class Scene:
     def draw(self, snapshot: Snapshot, status: Status) -> None:
         """Make every browser show this; cheap for what has not changed."""
         now = time.monotonic()
-        self._follow(self._draw_it(snapshot, status.source.rod_m), min(now - self._drawn_at, LONGEST_STEP_S))
+        self._follow(self._stage.draw(snapshot), min(now - self._drawn_at, LONGEST_STEP_S))
         self._drawn_at = now
         self._server.flush()  # the shoe need not wait for words and graphs
         if now >= self._next_graph:
             self._next_graph = now + GRAPH_S
-            self.panel.show_graphs(snapshot, hanging=status.source.rod_m is not None)
+            self.panel.show_graphs(snapshot)
         if now >= self._next_text:
             self._next_text = now + TEXT_S
             self._reference.draw(status.reference)
@@ -78,17 +76,6 @@ class Scene:
     def close(self) -> None:
         """Stop viser."""
         private.close_server(self._server)
-
-    def _draw_it(self, snapshot: Snapshot, rod_m: float | None) -> list[Vector]:
-        """A walk, or a pendulum of ``rod_m``; returns what to look at."""
-        if rod_m != (self._pendulum.rod_m if self._pendulum else None):
-            if self._pendulum is not None:
-                self._pendulum.remove()
-            self._pendulum = Pendulum(self._server.scene, rod_m) if rod_m is not None else None
-        if self._pendulum is None:
-            return self._walkers.draw(snapshot)
-        self._walkers.draw(no_feet(snapshot))
-        return [self._pendulum.draw(snapshot)]
 
     def _follow(self, places: list[Vector], elapsed_s: float) -> None:
         if not self._view["follow"] or not places:
@@ -106,9 +93,9 @@ class Scene:
             self._theme(on)
             self._ground.recolour(on)
         if name == "axes":
-            self._walkers.show_axes(on)
+            self._stage.walkers.show_axes(on)
         if name == "own":
-            self._walkers.show_own(on)
+            self._stage.walkers.show_own(on)
 
     def _theme(self, dark: bool) -> None:
         self._server.gui.configure_theme(

@@ -9,7 +9,7 @@ from typing import Any
 import viser
 
 from app.motion import ResetHeading, RestartHere, Snapshot, Status
-from app.scene import figures, phones
+from app.scene import figures, phones, swinging
 from app.scene.beat import beat
 from app.scene.before import BeforeTab
 from app.scene.controls import Ask, Controls, Html, Input
@@ -129,7 +129,7 @@ class Panel:
         """Words, figures and controls: at most ten times a second."""
         self._header.show(figures.header(status) + beat(time.time()))
         self._message.show(banner(status) + figures.message(snapshot, status))
-        self._feet.show(figures.feet(snapshot, view["own"]) + told(status.reference))
+        self._feet.show(_cards(snapshot, view["own"]) + told(status.reference))
         self._phones[0].show("" if snapshot.main.feet else phones.code(status))
         self._phones[1].show(phones.code(status))
         self._soundness.show(snapshot, status)
@@ -147,9 +147,14 @@ class Panel:
         for name, control in self._switches.items():
             control.show(view[name])
 
-    def show_graphs(self, snapshot: Snapshot, hanging: bool) -> None:
+    def show_graphs(self, snapshot: Snapshot) -> None:
         """The last seconds."""
-        self._graphs.draw(snapshot, hanging)
+        self._graphs.draw(snapshot)
+
+
+def _cards(snapshot: Snapshot, own: bool) -> str:
+    """A walk's, or a pendulum's."""
+    return swinging.card(snapshot.pendulum, snapshot) if snapshot.pendulum else figures.feet(snapshot, own)
 
 
 def _rate(snapshot: Snapshot, status: Status) -> float:

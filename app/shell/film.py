@@ -37,7 +37,9 @@ def _filmed(recording: Recording, truth: Truth | None, settings: Settings) -> st
     pace = max(1.0, round(frames / MOST_FRAMES + 0.49))
     step_ns = int(1e9 * pace / RATE_HZ)
     roles = {samples.sensor: samples.role for samples in recording.sensors}
-    session = Session(settings, lambda sensor: roles.get(sensor) or role_of(sensor), truth)
+    session = Session(
+        settings, lambda sensor: roles.get(sensor) or role_of(sensor), truth, rod_m=recording.rod_m
+    )
     taken = 0
     with film(recording.name, pace) as made:
         for elapsed_ns in range(0, timeline.duration_ns + step_ns, step_ns):

@@ -204,8 +204,8 @@ class Viewer:
         self._last_sample_s = time.monotonic()
 
     def _new_session(self, settings: Settings, epoch: int) -> Session:
-        truth, budget = self._source.info.truth, self._options.budget_bytes
-        return Session(settings, self._role, truth, budget, self._clock, epoch)
+        info, budget = self._source.info, self._options.budget_bytes
+        return Session(settings, self._role, info.truth, budget, self._clock, epoch, info.rod_m)
 
     async def _read(self) -> None:
         async for item in self._source:

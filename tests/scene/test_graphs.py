@@ -63,9 +63,9 @@ def test_the_first_graph_says_what_its_estimator_judges_by(scene: Scene) -> None
     papers = fakes.snapshot(3.0)
     settings = papers.main.settings.with_changes({"estimator": "kalman"})
     kalman = replace(papers, main=papers.main._replace(settings=settings), graphs=dict(papers.graphs))
-    scene.panel.show_graphs(papers, hanging=False)
+    scene.panel.show_graphs(papers)
     assert any("Ω_th" in str(m) for m in plots(scene))
-    scene.panel.show_graphs(kalman, hanging=False)
+    scene.panel.show_graphs(kalman)
     shown = [str(m) for m in plots(scene)]
     assert any("√T" in m for m in shown)
     assert not any("Ω_th" in m for m in shown)
