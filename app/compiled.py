@@ -73,7 +73,9 @@ def choose_cache_folder(name: str) -> Path:
     return folder
 
 
-os.environ["NUMBA_CACHE_DIR"] = str(choose_cache_folder(sources_hash()))
+#: Names the kernels of this program: the same name, the same numbers.
+KERNELS = sources_hash()
+os.environ["NUMBA_CACHE_DIR"] = str(choose_cache_folder(KERNELS))
 
 import numba  # noqa: E402  (the folder has to be known first)
 

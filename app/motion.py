@@ -8,7 +8,7 @@ magnetic field is in µT. Degrees live in ``scene/`` only.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from enum import IntEnum, StrEnum
 from typing import NamedTuple
@@ -177,12 +177,49 @@ class Stretch:
         return sum(rows.last - rows.first for rows in self.rows)
 
 
+class Saved(NamedTuple):
+    """One foot's estimate between two swings: all that it takes to go on from there."""
+
+    settings: Settings
+    row: int  # samples before it
+    state: bytes  # of the estimator's own record
+    newest: tuple[float, ...]  # the last row
+    strides: int
+    distance_m: float
+    contact: tuple[float, Vector, float] | None  # the last footprint: seconds, where, heading in rad
+
+
+class Way(NamedTuple):
+    """A foot's trail over rows ``first`` to ``last`` (exclusive), decimated for drawing."""
+
+    first: int
+    last: int
+    segments: NDArray[np.float32]  # [k, 2, 3] in n
+
+
+@dataclass(frozen=True, eq=False)
+class Landing:
+    """A leap over many samples of a recording: each foot goes on from a state saved near its end.
+
+    ``steps`` gives the same samples in stretches, for whom the states are of no use.
+    """
+
+    stretch: Stretch
+    saved: Mapping[str, Saved]
+    ways: Mapping[str, Way]  # to those states, from the start
+    steps: Callable[[], Iterator[Stretch]]
+
+    def __len__(self) -> int:
+        return len(self.stretch)
+
+
 @dataclass(frozen=True)
 class Journal:
     """How a recording of ours came to be: the order in which samples and orders were taken.
 
     ``arrivals`` [n] is which sensor (its place in ``Recording.sensors``) gave each sample, ``elapsed_ns``
-    [n] when, from the first. An order stands with the number of samples before it.
+    [n] when, from the first. An order stands with the number of samples before it, and so do the messages
+    that hold an estimate (``formats/states``), each with its sensor.
     """
 
     settings: Settings  # the main track's, when it began
@@ -192,6 +229,8 @@ class Journal:
     elapsed_ns: Ints
     orders: tuple[tuple[int, Order], ...] = ()
     markers: tuple[tuple[float, str], ...] = ()  # seconds from the first sample, text
+    states: tuple[tuple[int, str, bytes], ...] = ()
+    ways: tuple[tuple[int, str, bytes], ...] = ()
 
 
 @dataclass(frozen=True)

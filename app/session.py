@@ -20,7 +20,7 @@ from app.health import Monitor, judge
 from app.own import OwnWalk
 from app.rotation import yaw_of
 from app.settings import Settings
-from app.tracks import Reestimation, SensorStore, Track
+from app.tracks import Reestimation, SensorStore, Track, landed_track
 from app.trail import TrailBuilder
 from app.truth import TruePlace, TrueWalk, attitude, errors
 
@@ -55,6 +55,8 @@ class Session:
         self.number = 0
         self.epoch = epoch
         self.wanted: Reestimation | None = None
+        self.filling: Reestimation | None = None  # after a landing
+        self._landed: Track | None = None
         self._next: Reestimation | None = None  # a candidate moved while an apply was under way
         self.changes: list[m.Change] = []
         self.log: list[tuple[int, m.Order]] = []  # orders, each with the number it was taken under
@@ -123,6 +125,38 @@ class Session:
             full |= store.samples.end % BLOCK == 1
         if full:
             self._keep_budget()
+
+    def land(self, landing: m.Landing) -> bool:
+        """Take a landing's samples from the states near its end, and want the walk before them filled in.
+
+        To the bit what ``take_stretch`` makes of them once ``filled``; False, and nothing taken, where the
+        states are not of this walk and its settings, or memory is short.
+        """
+        if self.candidate is not None or self.wanted is not None or not self._has_room_for(landing):
+            return False
+        track = landed_track(f"landed{self.number}", self.main.settings, landing)
+        if track is None:
+            return False
+        self.main = self._landed = track
+        self.take_stretch(landing.stretch)
+        fill = Reestimation(0, track.settings, {}, {}, True, "", "", 0, self.number, track.settings)
+        self.filling = self._fresh(fill)
+        return True
+
+    def _has_room_for(self, landing: m.Landing) -> bool:
+        """Whether the whole walk stays in memory, and goes on where the landing's samples begin."""
+        row_bytes = 8 * (m.SAMPLE_WIDTH + 2 + 2 * m.ROW_WIDTH)
+        here = {sensor: (store.samples.start, store.samples.end) for sensor, store in self.stores.items()}
+        follows = all(here.get(r.samples.sensor, (0, 0)) == (0, r.first) for r in landing.stretch.rows)
+        return follows and self.stored_bytes + len(landing) * row_bytes < self._budget // 2
+
+    def filled(self, job: Reestimation, track: Track) -> None:
+        """The whole walk up to where the session has landed, unless its estimate is another by now."""
+        if self.filling is None or job.number != self.filling.number:
+            return
+        self.filling = None
+        if self.main is self._landed and self._catch_up(track):
+            self.main = track
 
     def _place(self, store: SensorStore, device_ns: int) -> None:
         """A sensor's first sample says where its walk begins on the clock that all share."""
@@ -347,7 +381,7 @@ class Session:
         self.stores, self._frozen, self._true, self._origin_ns = {}, {}, {}, None
         self._errors, self._errors_at = {}, {}
         self._own = {}
-        self.wanted, self._next, self.candidate = None, None, None
+        self.wanted, self._next, self.candidate, self.filling = None, None, None, None
         self.main = Track(f"main{self.epoch}", self.main.settings)
         if coming is not None:
             self._make_main(Track(f"main{self.epoch}", coming.settings), coming)

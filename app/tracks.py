@@ -13,6 +13,7 @@ import numpy as np
 
 from app.blocks import BLOCK, Blocks
 from app.clocks import Clock, KnownClock
+from app.estimator.landing import landed
 from app.estimator.smoother import finish
 from app.estimator.tracker import Checkpoint, Tracker
 from app.motion import (
@@ -21,6 +22,7 @@ from app.motion import (
     Footprint,
     FootView,
     GaitPhase,
+    Landing,
     Quaternion,
     Role,
     RowColumn,
@@ -28,10 +30,11 @@ from app.motion import (
     Sample,
     TrackView,
     Trail,
+    TrailPiece,
     Vector,
 )
 from app.settings import Settings
-from app.trail import TrailBuilder
+from app.trail import TOLERANCES_M, Segments, TrailBuilder, coarser
 from app.truth import TruePlace, error_m
 
 NO_FIELD = (math.nan, math.nan, math.nan)
@@ -158,6 +161,11 @@ class FootTrack:
         self._segments_seen = 0
         self._footprints: tuple[Footprint, ...] = ()
 
+    def land(self, tracker: Tracker, way: Segments) -> None:
+        """Go on as ``tracker``, which comes from a saved state, by the ``way`` to it."""
+        self.tracker, self._settled = tracker, tracker.rows.end - 1
+        self.builder.seed((TrailPiece(f"{self.builder.name}/way", coarser(way, TOLERANCES_M[-1])),))
+
     def advance(self, store: Blocks) -> None:
         """Take the samples that are new."""
         self.tracker.advance(store)
@@ -282,6 +290,18 @@ class Track:
     def nbytes(self) -> int:
         """Memory of all rows."""
         return sum(foot.tracker.rows.nbytes for foot in self.feet.values())
+
+
+def landed_track(name: str, settings: Settings, landing: Landing) -> Track | None:
+    """The track whose feet go on from a landing's states; None if one is of other settings."""
+    track = Track(name, settings)
+    for sensor, saved in landing.saved.items():
+        tracker = landed(settings, saved)
+        if tracker is None:
+            return None
+        track.feet[sensor] = FootTrack(f"{name}.{sensor}", Blocks(SAMPLE_WIDTH), settings)
+        track.feet[sensor].land(tracker, landing.ways[sensor].segments)
+    return track
 
 
 @dataclass(frozen=True, eq=False)

@@ -99,7 +99,7 @@ class TrailBuilder:
 
     def __init__(self, name: str) -> None:
         """``name`` makes the keys of its pieces unique."""
-        self._name = name
+        self.name = name
         self._made = 0
         self._taken = 0  # rows
         self._levels: list[list[TrailPiece]] = [[] for _ in TOLERANCES_M]
@@ -136,7 +136,7 @@ class TrailBuilder:
 
     def turn(self, name: str, angle_rad: float) -> None:
         """Turn all of it clockwise, seen from above, about the start; its pieces get new keys."""
-        self._name = name
+        self.name = name
         self._levels = [
             [TrailPiece(f"{name}/{p.key}", _turned(p.segments, angle_rad)) for p in level]
             for level in self._levels
@@ -147,7 +147,7 @@ class TrailBuilder:
 
     def finished(self) -> tuple[TrailPiece, ...]:
         """All of it as settled pieces, the growing one too."""
-        return (*self._pieces, TrailPiece(f"{self._name}.growing{self._taken}", self._all_growing()))
+        return (*self._pieces, TrailPiece(f"{self.name}.growing{self._taken}", self._all_growing()))
 
     def trail(self, provisional: Floats) -> Trail:
         """What there is to draw; ``provisional`` [k, ≥3] are the rows after the settled ones."""
@@ -179,7 +179,7 @@ class TrailBuilder:
 
     def _put(self, level: int, segments: Segments) -> None:
         self._made += 1
-        self._levels[level].append(TrailPiece(f"{self._name}.{self._made}", segments))
+        self._levels[level].append(TrailPiece(f"{self.name}.{self._made}", segments))
         if level + 1 < len(TOLERANCES_M) and len(self._levels[level]) > PIECES:
             merged = [self._levels[level].pop(0).segments for _ in range(MERGED)]
             self._put(level + 1, coarser(np.concatenate(merged), TOLERANCES_M[level + 1]))

@@ -14,6 +14,7 @@ HEART = {
     "session",
     "tracks",
     "trail",
+    "saving",
     "truth",
     "own",
     "graphs",

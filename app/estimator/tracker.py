@@ -60,6 +60,11 @@ class Tracker:
         return self.method.trust(self.state, self.distance_m)
 
     @property
+    def contact(self) -> Contact | None:
+        """The last footprint of this segment."""
+        return self._contact
+
+    @property
     def settled_end(self) -> int:
         """Rows before this one will not change: those after the last quiet row of a swing under way may."""
         if not self.method.moves(self.state):

@@ -7,12 +7,12 @@ The sensor's clock is the message's publish time (modulo 2⁶⁴), the host's it
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from typing import Any, NamedTuple
 
-from app.formats import cdr, journal
+from app.formats import cdr, journal, states
 from app.formats.mcap import Writer
-from app.motion import Order, Quaternion, Role, Sample, Stride, Vector
+from app.motion import Order, Quaternion, Role, Sample, Saved, Stride, Vector, Way
 
 RECORDING = "/stridescope/recording"
 START = "/stridescope/start"
@@ -20,6 +20,7 @@ ORDERS = "/stridescope/orders"
 MARKERS = "/stridescope/markers"
 EVENTS = "/stridescope/events"
 IMU, FIELD, EXTRA, POSE, STRIDES = "imu", "magnetic_field", "extra", "pose", "strides"
+STATE, WAY = "state", "trail"
 FRAME_N = "ned"
 
 _OURS = {
@@ -37,16 +38,21 @@ class _Channels(NamedTuple):
     extra: int
     pose: int
     strides: int
+    state: int
+    way: int
 
 
 class Keeper:
     """Takes a walk piece by piece; ``chunk`` gives the bytes of what came since the last one.
 
-    ``clock_ns`` is what turns a host stamp into nanoseconds since 1970.
+    ``clock_ns`` is what turns a host stamp into nanoseconds since 1970. Who holds ``key`` believes states.
     """
 
-    def __init__(self, about: Mapping[str, object], roles: Mapping[str, Role], clock_ns: int) -> None:
+    def __init__(
+        self, about: Mapping[str, object], roles: Mapping[str, Role], clock_ns: int, key: bytes = b""
+    ) -> None:
         self.mcap = Writer()
+        self._key = key
         self._clock_ns = clock_ns
         self._roles = roles
         self._sensors: dict[str, _Channels] = {}
@@ -107,6 +113,14 @@ class Keeper:
             log_ns = host_ns + self._clock_ns
             self.mcap.add(channels.strides, stride.number, log_ns, log_ns, journal.to_json(stride._asdict()))
 
+    def estimate(self, sensor: str, host_ns: int, saved: Saved, way: Callable[[], Way]) -> None:
+        """A foot's estimate after the samples that came before it, and the way it has come since the last."""
+        channels = self._sensors.get(sensor)
+        if channels is not None:
+            log_ns, made = host_ns + self._clock_ns, way()
+            self.mcap.add(channels.way, made.last, log_ns, log_ns, states.write_way(made))
+            self.mcap.add(channels.state, saved.row, log_ns, log_ns, states.write_state(saved, self._key))
+
     def chunk(self) -> bytes:
         """The bytes of what came since the last chunk."""
         return self.mcap.chunk()
@@ -142,6 +156,10 @@ class Keeper:
             pose=self._ros(topic(POSE), cdr.POSE, about | {"kind": POSE}),
             strides=self._json(topic(STRIDES), "Stride", "From one initial contact to the next.",
                                **about, kind=STRIDES),
+            state=self._json(topic(STATE), "State", "The estimator between two swings, to go on from.",
+                             **about, kind=STATE),
+            way=self._json(topic(WAY), "Trail", "The way since the last, decimated: lines, metres.",
+                           **about, kind=WAY),
         )  # fmt: skip
         self._sensors[sensor] = made
         return made

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -57,6 +57,15 @@ class Readings:
         return len(self.place)
 
 
+class _Told(NamedTuple):
+    """A message about a sensor's first ``rows`` samples."""
+
+    place: int
+    rows: int
+    sensor: str
+    data: bytes
+
+
 @dataclass(frozen=True)
 class Kept:
     """Everything in a file, in the order of the log. Places are those of ``Readings``."""
@@ -68,6 +77,8 @@ class Kept:
     markers: tuple[tuple[int, str], ...]
     events: tuple[dict[str, Any], ...]
     closed: bool
+    states: tuple[_Told, ...] = ()
+    ways: tuple[_Told, ...] = ()
     messages: dict[str, int] = field(default_factory=dict)  # by topic
 
 
@@ -119,8 +130,21 @@ def _kept(contents: Contents) -> Kept:
         markers=tuple((place, text) for place, text in texts if isinstance(text, str)),
         events=tuple(journal.from_json(data) for _, data in said(keeping.EVENTS)),
         closed=contents.closed,
+        states=_told(contents, keeping.STATE),
+        ways=_told(contents, keeping.WAY),
         messages={topic: len(found.place) for topic, found in topics.items() if len(found.place)},
     )
+
+
+def _told(contents: Contents, kind: str) -> tuple[_Told, ...]:
+    """All messages of a kind, of all sensors, in the file's order."""
+    found = []
+    for number, channel in contents.channels.items():
+        about, own = dict(channel.metadata), contents.gathered[number]
+        if about.get("kind") == kind and "sensor" in about:
+            columns = zip(own.place.tolist(), own.sequence.tolist(), own.data, strict=True)
+            found += [_Told(place, rows, about["sensor"], data) for place, rows, data in columns]
+    return tuple(sorted(found))
 
 
 # --- samples -------------------------------------------------------------------------------------
@@ -282,6 +306,16 @@ def _journal(
         for place, _, order in found.orders
         if place >= begin and not (isinstance(order.command, RestartHere) and order.who == SOURCE)
     )
+
+    def counted(told: tuple[_Told, ...]) -> tuple[tuple[int, str, bytes], ...]:
+        """Those about just the samples before them: none that was dropped, left out or of an earlier walk."""
+        before = {samples.sensor: own for samples, own in zip(sensors, places, strict=True)}
+        return tuple(
+            (int(np.searchsorted(merged, place)), sensor, data)
+            for place, rows, sensor, data in told
+            if place >= begin and sensor in before and np.searchsorted(before[sensor], place) == rows
+        )
+
     marks = ((int(np.searchsorted(merged, place)), text) for place, text in found.markers if place >= begin)
     return Journal(
         settings=start.settings,
@@ -291,6 +325,8 @@ def _journal(
         elapsed_ns=elapsed_ns,
         orders=tuple(orders),
         markers=tuple((float(elapsed_ns[max(place - 1, 0)]) * 1e-9, text) for place, text in marks),
+        states=counted(found.states),
+        ways=counted(found.ways),
     )
 
 

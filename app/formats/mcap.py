@@ -211,7 +211,7 @@ class _Found(NamedTuple):
     """A chunk by its own words: where it is, and what its records should be."""
 
     begin: int
-    end: int
+    next: int  # where to look on: its end, or its second byte where it says two lengths
     frame: bytes
     size: int
     crc: int
@@ -228,7 +228,7 @@ def whole_chunks(data: bytes) -> Iterator[bytes]:
                 # it may have said a false length: look from behind its first byte, and in small steps for now
                 position, together = chunk.begin + 1, 1
                 break
-            position = chunk.end
+            position = chunk.next
             yield records
 
 
@@ -239,7 +239,7 @@ def _chunks_from(data: bytes, position: int, together: int) -> list[_Found]:
     while size < together and (mark := data.find(_COMPRESSION, position + _MARK_AT)) >= 0:
         begin = mark - _MARK_AT
         chunk = _chunk_at(data, begin)
-        position = begin + 1 if chunk is None else chunk.end
+        position = begin + 1 if chunk is None else chunk.next
         if chunk is not None:
             found.append(chunk)
             size += chunk.size
@@ -250,11 +250,12 @@ def _chunk_at(data: bytes, begin: int) -> _Found | None:
     """The chunk that begins there, if one does."""
     if len(data) - begin < _CHUNK_HEAD.size:
         return None
-    opcode, _, _, _, size, crc, _, packed = _CHUNK_HEAD.unpack_from(data, begin)
+    opcode, length, _, _, size, crc, _, packed = _CHUNK_HEAD.unpack_from(data, begin)
     end = begin + _CHUNK_HEAD.size + packed
     if opcode != _CHUNK or size > LARGEST or end > len(data):
         return None
-    return _Found(begin, end, data[begin + _CHUNK_HEAD.size : end], size, crc)
+    agreed = begin + _RECORD.size + length == end  # a frame is good whatever stands behind it
+    return _Found(begin, end if agreed else begin + 1, data[begin + _CHUNK_HEAD.size : end], size, crc)
 
 
 def _crc(records: bytes) -> int:

@@ -22,7 +22,18 @@ from typing import Any
 from app import __version__
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
-from app.motion import InputError, Order, Quaternion, RecorderState, Sample, SourceInfo, Stride, Vector
+from app.motion import (
+    InputError,
+    Order,
+    Quaternion,
+    RecorderState,
+    Sample,
+    Saved,
+    SourceInfo,
+    Stride,
+    Vector,
+    Way,
+)
 from app.outputs.syncing import Syncer
 
 log = logging.getLogger(__name__)
@@ -49,10 +60,12 @@ class Recorder:
         info: SourceInfo,
         made_by: str | None = None,
         sync: Callable[[int], None] = os.fsync,
+        key: bytes = b"",
     ) -> None:
         """Make the file; ``InputError`` if that cannot be done.
 
         ``source`` is the SPEC, ``made_by`` the simulator's behind a file. ``sync`` takes a file's number.
+        Who holds ``key`` believes the estimator's states in the file.
         """
         self._sync = sync
         self._queue: deque[_Waiting] = deque()
@@ -64,7 +77,7 @@ class Recorder:
         self._ended_s: float | None = None
         self._over = threading.Event()
         about = _about(info) | {"profile": profile, "source": source, "spec": made_by or ""}
-        self._keeper = Keeper(about, info.sensors, time.time_ns() - time.monotonic_ns())
+        self._keeper = Keeper(about, info.sensors, time.time_ns() - time.monotonic_ns(), key)
         try:
             folder.mkdir(parents=True, exist_ok=True)
             self._reserve = tempfile.TemporaryFile(dir=folder)  # noqa: SIM115  (held open)
@@ -108,6 +121,11 @@ class Recorder:
         """A stride that ended."""
         if len(self._queue) < MOST_WAITING // 2:
             self._queue.append((Keeper.stride, (sensor, time.monotonic_ns(), stride)))
+
+    def estimate(self, sensor: str, saved: Saved, way: Callable[[], Way]) -> None:
+        """A foot's estimate between two swings; ``way`` is called by the recorder's thread."""
+        if len(self._queue) < MOST_WAITING // 2:
+            self._queue.append((Keeper.estimate, (sensor, time.monotonic_ns(), saved, way)))
 
     # --- out ---------------------------------------------------------------------------------------
 

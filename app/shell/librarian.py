@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any
 
 from app import motion as m
+from app.home.key import key
 from app.outputs.files import beside
 from app.settings import Settings
 from app.shell.shelf import SHARED, TRACK, Shelf, track
@@ -82,7 +83,7 @@ class Librarian:
         self._say("")
 
     def _open(self, name: str) -> Source:
-        source = open_source(f"replay:{self.shelf.path(name)}", stretches=True)
+        source = open_source(f"replay:{self.shelf.path(name)}", stretches=True, key=key())
         if source.settings is not None:
             warm_up(source.settings.estimator)
         return source

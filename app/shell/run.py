@@ -31,9 +31,11 @@ from app.estimator import sweep as gains
 from app.formats.journal import Start
 from app.health import report
 from app.home import profiles
+from app.home.key import key
 from app.launch import open_in_browser
 from app.measures import measures
 from app.outputs.recorder import Recorder
+from app.saving import Saver
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
@@ -82,7 +84,7 @@ class Options:
 
 def walk(options: Options, tell: Callable[[str], None]) -> None:
     """Serve the walk until Ctrl-C. ``tell`` prints a line. Bad input is ``InputError``."""
-    source = open_source(options.source, changes=not options.told, stretches=True)
+    source = open_source(options.source, changes=not options.told, stretches=True, key=key())
     asyncio.run(Viewer(options, source).serve(tell))
 
 
@@ -102,6 +104,8 @@ class Viewer:
         )
         self._session = self._new_session(source.settings or options.settings, 0)
         self._recorder: Recorder | None = None
+        self._saver = Saver()
+        self._filling: asyncio.Task[None] | None = None
         self._posed_s = 0.0
         self._strides: dict[str, tuple[int, int]] = {}  # epoch and number of the last stride recorded
         self._orders: asyncio.Queue[m.Order] = asyncio.Queue()
@@ -213,13 +217,13 @@ class Viewer:
                 self._take_order(m.Order(item, "replay", time.monotonic_ns()))
                 if self._recorder is not None:
                     self._recorder.start(self._start())
+                    self._saver.begin(self._session)
             elif isinstance(item, m.Order):
                 self._take_order(item)
-            elif isinstance(item, m.Stretch) and not self._before.wants_each:
-                await self._take_stretch(item)
             elif isinstance(item, m.Stretch):
-                for sample in item.each():
-                    self._take_sample(sample)
+                await self._take_stretch(item)
+            elif isinstance(item, m.Landing):
+                await self._land(item)
             else:
                 self._take_sample(item)
 
@@ -231,7 +235,29 @@ class Viewer:
         self._fresh.set()
         self._last_sample_s = time.monotonic()
 
+    async def _land(self, landing: m.Landing) -> None:
+        """Show a far place at once and fill in the walk before it; a recording of it wants every sample."""
+        if self._recorder is None and not self._before.wants_each and self._session.land(landing):
+            self._fresh.set()
+            self._last_sample_s = time.monotonic()
+            self._filling = asyncio.create_task(self._fill(), name="fill in")
+            return
+        for stretch in landing.steps():
+            await self._take_stretch(stretch)
+            await asyncio.sleep(0)
+
+    async def _fill(self) -> None:
+        session, job = self._session, self._session.filling
+        if job is not None:
+            track = await asyncio.get_running_loop().run_in_executor(self._workers, reestimated, job)
+            session.filled(job, track)
+            self._fresh.set()
+
     async def _take_stretch(self, stretch: m.Stretch) -> None:
+        if self._before.wants_each:
+            for sample in stretch.each():
+                self._take_sample(sample)
+            return
         self._session.take_stretch(stretch)
         self._fresh.set()
         self._last_sample_s = time.monotonic()
@@ -331,8 +357,11 @@ class Viewer:
             folder = self._options.record or self._options.recordings
             made_by = self._source.made_by
             options = self._options
-            self._recorder = Recorder(folder, options.profile, options.source, self._source.info, made_by)
+            self._recorder = Recorder(
+                folder, options.profile, options.source, self._source.info, made_by, key=key()
+            )
             self._recorder.start(self._start())
+            self._saver.begin(self._session)
 
     def _start(self) -> Start:
         """What the session holds now, for a walk that is recorded from here."""
@@ -360,6 +389,8 @@ class Viewer:
                 if (epoch, stride.number) > self._strides.get(foot.sensor, (0, -1)):
                     self._strides[foot.sensor] = (epoch, stride.number)
                     self._recorder.stride(foot.sensor, stride)
+        for due in self._saver.due(self._session):
+            self._recorder.estimate(*due)
 
     # --- long work ---------------------------------------------------------------------------------
 

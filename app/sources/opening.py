@@ -29,13 +29,19 @@ _SAME = 1e-6  # m/s², rad/s: another machine's sines differ in the last digits
 
 
 def open_source(
-    spec_text: str, *, finish: bool = False, changes: bool = True, stretches: bool = False
+    spec_text: str,
+    *,
+    finish: bool = False,
+    changes: bool = True,
+    stretches: bool = False,
+    key: bytes = b"",
 ) -> Source:
     """The source a SPEC names, at the pace it asks for; ``InputError`` if there is none.
 
     ``finish``: the source ends after the last sample instead of waiting for a seek. ``changes``: a
     recording of ours repeats the changes made to its walk, if the SPEC does not say otherwise.
-    ``stretches``: a long seek gives its samples as ``Stretch``.
+    ``stretches``: a long seek gives its samples as ``Stretch``; ``key``: or as ``Landing``, by states that
+    were saved with the same key.
     """
     spec = parse_spec(spec_text)
     if spec.kind in LIVE:
@@ -44,7 +50,7 @@ def open_source(
     kind = Laboratory if spec.kind == "sim" else Replay
     return kind(
         recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes and spec.changes,
-        truth=truth, stretches=stretches,
+        truth=truth, stretches=stretches, key=key,
     )  # fmt: skip
 
 

@@ -21,6 +21,7 @@ from app.motion import (
     DropCandidate,
     InputError,
     Journal,
+    Landing,
     Link,
     Loop,
     Order,
@@ -40,6 +41,7 @@ from app.motion import (
     Truth,
 )
 from app.settings import Settings
+from app.sources.landing import Landings
 from app.sources.source import Item
 from app.sources.spec import FASTEST, SLOWEST
 from app.sources.timeline import Timeline
@@ -83,7 +85,7 @@ class Replay:
     It yields samples, a recording's own orders between them (unless ``changes`` is off), and
     ``RestartHere`` before it begins anew. At the end it waits for a seek or
     a loop, unless ``finish`` is set. ``speed`` 0 is as fast as the reader takes them. With ``stretches``
-    a long seek yields ``Stretch`` instead of samples.
+    a long seek yields ``Stretch``, and with a ``key`` ``Landing`` where states were saved, not samples.
     """
 
     def __init__(
@@ -97,6 +99,7 @@ class Replay:
         truth: Truth | None = None,
         clock: Clock | None = None,
         stretches: bool = False,
+        key: bytes = b"",
     ) -> None:
         self.recording = recording
         self.replay = True
@@ -116,6 +119,7 @@ class Replay:
         self._orders = orders_by_place(self._journal)
         self._places = sorted(self._orders)
         self._stretches = stretches
+        self._landings = Landings(recording, self._timeline, key) if key and self._journal else None
         self._next = 0  # the first sample not yet released
         self._begun = False  # the playhead waits for the reader
         self._restart = False
@@ -190,7 +194,7 @@ class Replay:
             for item in self._out(now_ns):
                 for order in self._orders.get(self._next, ()):
                     yield order
-                self._next += len(item) if isinstance(item, Stretch) else 1
+                self._next += 1 if isinstance(item, Sample) else len(item)
                 yield item
                 if self._at_end():
                     for order in self._orders.get(self._next, ()):
@@ -209,13 +213,16 @@ class Replay:
             await self._rest()
             breath_ns = self._clock.now_ns()
 
-    def _out(self, now_ns: int) -> Sequence[Sample | Stretch]:
+    def _out(self, now_ns: int) -> Sequence[Sample | Stretch | Landing]:
         """Some of what is due: a stretch up to the next order or block where there is far to go."""
         first, due = self._next, self._due()
         far = self._timeline.due(self._timeline.elapsed_ns(due - 1) - WATCHED_NS) if due > first else first
         early = self._timeline.elapsed_ns(min(first, due - 1)) < WATCHED_NS
         if not self._stretches or self._jump is None or early or far - first <= _CHUNK:
             return self._timeline.cut(first, min(due, first + _CHUNK), now_ns) if due > first else ()
+        landing = self._landings and self._landings.landing(first, far, now_ns)
+        if landing:
+            return (landing,)
         place = bisect_right(self._places, first)
         order = self._places[place] if place < len(self._places) else far
         return (self._timeline.stretch(first, min(far, order, self._timeline.block_end(first)), now_ns),)

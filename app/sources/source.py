@@ -6,12 +6,22 @@ from collections.abc import AsyncIterator, Mapping
 from typing import Protocol
 
 from app.formats.wire.stream import Counters
-from app.motion import InputError, Link, Order, ReplayCommand, RestartHere, Sample, SourceInfo, Stretch
+from app.motion import (
+    InputError,
+    Landing,
+    Link,
+    Order,
+    ReplayCommand,
+    RestartHere,
+    Sample,
+    SourceInfo,
+    Stretch,
+)
 from app.settings import Settings
 
 #: What a source yields. Only a replay yields orders (those recorded) and ``RestartHere``, and stretches only
 #: to whom asks for them.
-Item = Sample | Order | RestartHere | Stretch
+Item = Sample | Order | RestartHere | Stretch | Landing
 
 
 class Source(Protocol):

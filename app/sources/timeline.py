@@ -31,6 +31,11 @@ class Timeline:
     def __len__(self) -> int:
         return len(self._elapsed_ns)
 
+    def sensors(self) -> list[str]:
+        """In the order in which they come first."""
+        found, at = np.unique(self._which, return_index=True)
+        return [self._sensors[index].sensor for index in found[np.argsort(at)].tolist()]
+
     @property
     def duration_ns(self) -> int:
         """From the first stamp to the last."""

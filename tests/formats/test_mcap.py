@@ -25,7 +25,7 @@ def a_file(chunks: int = 5, per_chunk: int = 4, close: bool = True) -> tuple[byt
             chunk = writer.chunk()
             found = mcap._chunk_at(chunk, 0)
             assert found is not None
-            ends.append(len(data) + found.end)
+            ends.append(len(data) + found.next)
             data += chunk
     return data + (writer.end() if close else b""), said, ends
 

@@ -48,6 +48,14 @@ def test_a_thousand_flipped_bits_cost_a_chunk_each() -> None:
         assert made.samples >= 36
 
 
+def test_a_chunk_that_says_it_is_longer_hides_none_behind_it() -> None:
+    begin = WHOLE.index(b"zstd", 3000) - 41
+    for bit in range(8, 15):
+        damaged = bytearray(WHOLE)
+        damaged[begin + 45 + bit // 8] ^= 1 << bit % 8
+        assert recover("x", bytes(damaged)).samples >= 36
+
+
 def test_the_first_chunk_is_not_needed() -> None:
     damaged = bytearray(WHOLE)
     damaged[300] ^= 1
