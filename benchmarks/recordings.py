@@ -11,12 +11,14 @@ from pathlib import Path
 from app.formats import plain
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
-from app.motion import Order, RestartHere, Sample, Seek, Stretch
+from app.motion import Landing, Order, RestartHere, Sample, Seek, Stretch
+from app.saving import Saver
 from app.session import Session
 from app.settings import Settings
 from app.simulate.walk import make_walk
 from app.sources.opening import open_source
 from app.sources.replay import Replay
+from app.sources.source import Item
 from app.sources.timeline import Timeline
 from app.warm import warm_up
 from benchmarks.figures import Figure, Section
@@ -24,6 +26,7 @@ from benchmarks.figures import Figure, Section
 HOUR = {"path": "eight", "feet": "2", "rate_hz": "100", "noise": "1", "duration_s": "3600"}
 FAST = {"path": "oval", "feet": "2", "rate_hz": "400", "noise": "1", "duration_s": "30"}
 CHUNK_S = 0.2
+KEY = bytes(32)
 SEEKS_S = (3500.0, 1800.0, 60.0, 3000.0)
 
 
@@ -37,12 +40,17 @@ def recordings() -> Section:
         yield Figure("processor time of writing it", written_s, "s")
         open_source(str(path))  # what is compiled is there, the file in memory
         began, used = time.perf_counter(), time.process_time()
-        source = open_source(str(path), stretches=True)
+        source = open_source(str(path), stretches=True, key=KEY)
         yield Figure("opened in", time.perf_counter() - began, "s", 2.0)
         yield Figure("processor time of it", time.process_time() - used, "s")
         assert isinstance(source, Replay)
-        took = asyncio.run(seeks(source))
+        took, filled = asyncio.run(seeks(source))
         yield Figure("seek and picture, the worst of four anywhere", max(took), "s", 1.0)
+        yield Figure("and the walk before it filled in, by a worker", max(filled), "s")
+        plain = open_source(str(path), stretches=True)
+        assert isinstance(plain, Replay)
+        slow, _ = asyncio.run(seeks(plain))
+        yield Figure("seek without the states", max(slow), "s", 1.0)
         fast_s, csv = write(Path(folder) / "fast.mcap", FAST)
         share = fast_s / float(FAST["duration_s"])
         yield Figure("recording two feet at 400 Hz, of one core", 100.0 * share, "%", 10.0)
@@ -56,8 +64,10 @@ def recordings() -> Section:
 def write(path: Path, walk: dict[str, str]) -> tuple[float, int]:
     """Record a simulated walk as the recorder does; processor seconds of it, and the size as plain CSV."""
     recording = make_walk(walk).recording
+    session, saver = Session(Settings()), Saver()
+    saver.begin(session)
     roles = {samples.sensor: samples.role for samples in recording.sensors}
-    timeline, keeper = Timeline(recording), Keeper({"source": "bench"}, roles, 10**18)
+    timeline, keeper = Timeline(recording), Keeper({"source": "bench"}, roles, 10**18, KEY)
     each = int(CHUNK_S * sum(samples.rate_hz for samples in recording.sensors))
     used = 0.0
     with path.open("wb") as file:
@@ -65,9 +75,13 @@ def write(path: Path, walk: dict[str, str]) -> tuple[float, int]:
         keeper.start(0, Start(Settings(), Settings(), False))
         for first in range(0, len(timeline), each):
             samples = timeline.cut(first, min(first + each, len(timeline)), 0)
+            session.take_stretch(timeline.stretch(first, first + len(samples), 0))
+            due = list(saver.due(session))
             began = time.process_time()
             for i, sample in enumerate(samples):
                 keeper.sample(sample._replace(host_ns=timeline.elapsed_ns(first + i)))
+            for sensor, saved, way in due:
+                keeper.estimate(sensor, timeline.elapsed_ns(first), saved, way)
             file.write(keeper.chunk())
             used += time.process_time() - began
         file.write(keeper.end())
@@ -75,28 +89,38 @@ def write(path: Path, walk: dict[str, str]) -> tuple[float, int]:
     return used, csv
 
 
-async def seeks(source: Replay) -> list[float]:
-    """Seconds from each order to seek to the snapshot that shows it."""
+async def seeks(source: Replay) -> tuple[list[float], list[float]]:
+    """Seconds from each order to seek to the snapshot that shows it, and then to fill in the walk before."""
     session = Session(source.settings or Settings())
     reading = aiter(source)
 
+    def take(item: Item) -> None:
+        if isinstance(item, Sample):
+            session.take(item)
+        elif isinstance(item, Stretch):
+            session.take_stretch(item)
+        elif isinstance(item, Landing):
+            assert session.land(item)
+        else:
+            session.apply(Order(item, "replay", 0) if isinstance(item, RestartHere) else item)
+
     async def until(t_s: float) -> None:
         async for item in reading:
-            if isinstance(item, Stretch):
-                session.take_stretch(item)
-            elif isinstance(item, Sample):
-                session.take(item)
-            else:
-                session.apply(Order(item, "replay", 0) if isinstance(item, RestartHere) else item)
+            take(item)
             if len(session.stores) == 2 and min(s.elapsed_s for s in session.stores.values()) >= t_s - 0.02:
                 return
 
     await until(0.1)
-    took = []
+    took, filled = [], []
     for t_s in SEEKS_S:
         began = time.perf_counter()
         source.control(Seek(t_s))
         await until(t_s)
         session.snapshot()
         took.append(time.perf_counter() - began)
-    return took
+        job = session.filling
+        if job is not None:
+            began = time.perf_counter()
+            session.filled(job, job.run())
+            filled.append(time.perf_counter() - began)
+    return took, filled
