@@ -16,10 +16,10 @@ import pytest
 from playwright.sync_api import Browser
 from pythonosc.osc_message import OscMessage
 
-from app.__main__ import main
 from app.commands.mover import wall_of
 from app.gestures.packet import decode
 from app.motion import InputError, MotionId
+from tests.refusals import refused
 from tests.scene.pages import PATIENCE_MS
 
 ROOT = Path(__file__).parent.parent.parent
@@ -108,10 +108,7 @@ def test_arrow_keys_in_a_real_browser_walk_the_town_to_a_target(browser: Browser
     ],
 )
 def test_mistakes_are_one_line(arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["mover", "--no-open", "--port", "0", *arguments]) == 2
-    said = capsys.readouterr().err
-    assert word in said
-    assert said.count("\n") == 1
+    assert word in refused(capsys, "mover", "--no-open", "--port", "0", *arguments)
 
 
 @pytest.mark.parametrize("text", ["3", "x", "0x1", "3x", "3x1x1", "10x1"])

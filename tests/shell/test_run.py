@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page
 
+from tests.refusals import refused
 from tests.scene.pages import PATIENCE_MS, open_page, pixels
 
 #: A walk of a minute; drawn small, because a test machine has no graphics card.
@@ -161,24 +162,20 @@ def test_a_term_signal_ends_it_too(tmp_path: Path) -> None:
     assert Program(tmp_path, "--source", SOURCE).end(signal.SIGTERM) == 0
 
 
-def refused(tmp_path: Path, *arguments: str) -> str:
-    """Run a command that must fail on the user's input; its one line."""
-    done = subprocess.run(
-        [sys.executable, "-m", "app", "walk", "--no-open", *arguments],
-        capture_output=True, text=True, timeout=110, env=environment(tmp_path), check=False,
-    )  # fmt: skip
-    assert done.returncode == 2, done.stderr
-    assert done.stderr.count("\n") == 1
-    assert "Traceback" not in done.stderr
-    return done.stderr
-
-
 def test_a_taken_port_is_an_error(tmp_path: Path) -> None:
+    """In a process of its own, as its user meets a mistake; the others are told in this one."""
     with socket.socket() as taken:
         taken.bind(("127.0.0.1", 0))
         taken.listen()
         port = str(taken.getsockname()[1])
-        assert port in refused(tmp_path, "--port", port, "--source", SOURCE)
+        done = subprocess.run(
+            [sys.executable, "-m", "app", "walk", "--no-open", "--port", port, "--source", SOURCE],
+            capture_output=True, text=True, timeout=110, env=environment(tmp_path), check=False,
+        )  # fmt: skip
+    assert done.returncode == 2, done.stderr
+    assert port in done.stderr
+    assert done.stderr.count("\n") == 1
+    assert "Traceback" not in done.stderr
 
 
 def test_on_another_host_tokens_are_made_and_told_once(tmp_path: Path) -> None:
@@ -208,23 +205,9 @@ def test_on_another_host_tokens_are_made_and_told_once(tmp_path: Path) -> None:
         (["--frobnicate"], "--frobnicate"),
     ],
 )
-def test_a_wrong_word_is_one_line(tmp_path: Path, arguments: list[str], word: str) -> None:
-    assert word in refused(tmp_path, *arguments)
-
-
-def test_nowhere_to_write_is_no_obstacle(tmp_path: Path) -> None:
-    """A home and a cache below a plain file cannot be made by anybody, root included."""
-    wall = tmp_path / "wall"
-    wall.write_text("")
-    env = {
-        **os.environ,
-        "HOME": str(wall / "home"),
-        "XDG_CACHE_HOME": str(wall / "c"),
-        "XDG_CONFIG_HOME": str(wall / "f"),
-    }
-    done = subprocess.run(
-        [sys.executable, "-m", "app", "process", "sim:walk?strides=3", "--json"],
-        capture_output=True, text=True, timeout=110, env=env, check=False,
-    )  # fmt: skip
-    assert done.returncode == 0, done.stderr
-    assert json.loads(done.stdout)["feet"]["foot"]["strides"] == 3
+def test_a_wrong_word_is_one_line(
+    arguments: list[str], word: str, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch,
+    tmp_path: Path,
+) -> None:  # fmt: skip
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    assert word in refused(capsys, "walk", "--no-open", *arguments)
