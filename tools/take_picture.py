@@ -36,7 +36,7 @@ def free_port() -> int:
 
 
 def main(path: Path) -> None:
-    """Walk for half a minute, move the threshold, look."""
+    """Walk for half a minute, move a slider, look."""
     port = free_port()
     command = [sys.executable, "-m", "app", "walk", "--no-open", "--port", str(port)]
     program = subprocess.Popen(command, cwd=ROOT)
@@ -53,9 +53,9 @@ def main(path: Path) -> None:
             page.wait_for_function(
                 "() => /Strides\\s+1[4-9]/.test(document.body.innerText)", timeout=PATIENCE_MS
             )
-            label = page.get_by_text(re.compile("Stance gain")).first
+            label = page.get_by_text(re.compile("Sensor height")).first
             field = label.locator("xpath=ancestor::*[.//input][1]").locator("input").last
-            field.fill("0.3")
+            field.fill("0.04")
             field.press("Enter")
             page.wait_for_timeout(6000)
             page.screenshot(path=str(path))

@@ -42,7 +42,7 @@ class Footprints:
         faces = np.concatenate([fan + i * len(self._outline) for i in range(PRINTS)])
         self._soles = scene.add_mesh_simple(
             f"/ned/prints/{name}/soles", np.zeros((PRINTS * len(self._outline), 3)), faces,
-            color=shade(blend(FOOT[role], PALE, 0.3), 0.45), side="double", cast_shadow=False,
+            color=shade(blend(FOOT[role], PALE, 0.3), 0.8), side="double", cast_shadow=False,
             flat_shading=True,
         )  # fmt: skip
         self._labels = [self._label(scene, f"/ned/prints/{name}/number_{i}") for i in range(NUMBERED)]

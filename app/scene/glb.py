@@ -23,7 +23,8 @@ class Part:
     """One mesh: vertices [n, 3] m, faces [m, 3], linear colours [n, 3 or 4] from 0 to 1.
 
     ``places`` [n, 2] are where on ``picture`` (the bytes of a JPEG file) each vertex lies; the picture
-    multiplies the colours. ``clear`` lets what lies behind shine through by the fourth colour.
+    multiplies the colours. ``clear`` lets what lies behind shine through by the fourth colour; it is seen
+    from both sides, as what is ``open`` is.
     """
 
     name: str
@@ -33,6 +34,7 @@ class Part:
     places: NDArray[np.float32] | None = None
     picture: bytes | None = None
     clear: bool = False
+    open: bool = False
 
 
 class _Body:
@@ -101,8 +103,12 @@ def _material(part: Part, with_picture: list[str]) -> dict[str, Any]:
     surface: dict[str, Any] = {"metallicFactor": 0.0, "roughnessFactor": 1.0}
     if part.picture is not None:
         surface["baseColorTexture"] = {"index": with_picture.index(part.name)}
-    material = {"name": part.name, "pbrMetallicRoughness": surface, "extensions": {"KHR_materials_unlit": {}}}
-    return {**material, "alphaMode": "BLEND", "doubleSided": True} if part.clear else material
+    material: dict[str, Any] = {
+        "name": part.name, "pbrMetallicRoughness": surface, "extensions": {"KHR_materials_unlit": {}},
+    }  # fmt: skip
+    if part.clear:
+        material["alphaMode"] = "BLEND"
+    return {**material, "doubleSided": True} if part.clear or part.open else material
 
 
 def _file(text: bytes, data: bytes) -> bytes:

@@ -10,12 +10,16 @@ import viser
 from numpy.typing import NDArray
 
 from app.motion import Vector
+from app.scene.baked import linear, ribbons
 from app.scene.colours import Rgb, blend, theme
+from app.scene.glb import Part, glb
 from app.scene.shoe import SENSOR_HEIGHT_M
 
 #: How far the bold lines go, and the others: far ones melt together, and cost more to draw than a shoe.
 REACH_M, NEAR_M = 20, 10
 BOLD_M, PIECE_M = 5, 5
+#: A line of the grid is twice as wide at this distance from the walker.
+WIDER_M = 3.0
 
 #: Strokes of the letters on the floor, x right and y up, one unit high.
 GLYPHS: dict[str, tuple[tuple[tuple[float, float], ...], ...]] = {
@@ -89,13 +93,17 @@ def ruler() -> NDArray[np.float32]:
     return np.concatenate([strokes(f"{m} m", (m - 0.2, 0.4), 0.16) for m in (1, 2, 5, 10, 15, 20)])
 
 
-def fading(segments: NDArray[np.float32], ink: Rgb, into: Rgb, reach_m: float) -> NDArray[np.uint8]:
-    """A colour for each end [k, 2, 3]: full in the middle, the sky's at ``reach_m``."""
-    away = np.clip(np.linalg.norm(segments[..., :2], axis=-1, keepdims=True) / reach_m, 0.0, 1.0)
-    mixed = np.array(ink) * (1.0 - away) + np.array(into) * away
-    # viser takes colours of single ends for linear light and would brighten them
-    result: NDArray[np.uint8] = np.rint(255.0 * (mixed / 255.0) ** 2.2).astype(np.uint8)
-    return result
+def fading(segments: NDArray[np.float32], ink: Rgb, into: Rgb, reach_m: float) -> NDArray[np.float32]:
+    """A linear colour for each end [k, 2, 3]: full in the middle, the sky's at ``reach_m``."""
+    away = np.clip(distance(segments)[..., None] / reach_m, 0.0, 1.0)
+    mixed: NDArray[np.float32] = (linear(ink) * (1.0 - away) + linear(into) * away).astype(np.float32)
+    return mixed
+
+
+def distance(segments: NDArray[np.float32]) -> NDArray[np.float32]:
+    """How far from the middle each end [k, 2] is, m."""
+    away: NDArray[np.float32] = np.linalg.norm(segments[..., :2], axis=-1)
+    return away
 
 
 def grid(every_m: int, reach_m: int, but_not_m: int | None = None) -> NDArray[np.float32]:
@@ -115,31 +123,29 @@ def grid(every_m: int, reach_m: int, but_not_m: int | None = None) -> NDArray[np
 class Ground:
     """All that never moves, under ``/ned``; only the grid comes along, by whole bold squares.
 
-    Light to draw on a tablet or without a graphics card: lines, no shader over the whole floor, no
-    shadow maps. The sky is the page's own style.
+    Light to draw on a tablet or without a graphics card: flat strips in plain colours, no shader over the
+    whole floor, no shadow maps, no environment map. The sky is the page's own style.
     """
 
     def __init__(self, scene: viser.SceneApi, dark: bool) -> None:
         self._scene = scene
         self._at = (0.0, 0.0, 0.0)
+        self._frame = scene.add_frame("/ned/ground", show_axes=False)
         scene.configure_default_lights(True, cast_shadow=False)
+        scene.configure_environment_map(None)
         self.recolour(dark)
 
     def recolour(self, dark: bool) -> None:
         """Draw it in the theme's colours."""
         colours = theme(dark)
-        self._frame = self._scene.add_frame("/ned/ground", show_axes=False, position=self._at)
-        for name, every_m, reach_m, but_not_m, ink, thickness in (
-            ("metres", 1, NEAR_M, BOLD_M, colours.cell, 1.0),
-            ("bold", BOLD_M, REACH_M, None, colours.section, 1.6),
-        ):
-            segments = grid(every_m, reach_m, but_not_m)
-            self._draw(
-                f"/ned/ground/{name}", segments, fading(segments, ink, colours.horizon, reach_m), thickness
-            )
-        self._draw("/ned/compass", rose(), colours.ink, 1.6)
-        self._draw("/ned/compass_north", north(), colours.accent, 2.4)
-        self._draw("/ned/ruler", ruler(), blend(colours.ink, colours.horizon, 0.3), 1.4)
+        self._lay("/ned/ground/grid", [
+            fading_lines("metres", grid(1, NEAR_M, BOLD_M), colours.cell, colours.horizon, NEAR_M, 0.004),
+            fading_lines("bold", grid(BOLD_M, REACH_M), colours.section, colours.horizon, REACH_M, 0.006),
+        ])  # fmt: skip
+        self._lay("/ned/compass", [
+            lines("rose", rose(), colours.ink, 0.007), lines("north", north(), colours.accent, 0.011),
+            lines("ruler", ruler(), blend(colours.ink, colours.horizon, 0.3), 0.010),
+        ])  # fmt: skip
 
     def reach(self, centre: Vector) -> None:
         """Keep the grid round the walker; its lines stay on whole metres."""
@@ -149,7 +155,20 @@ class Ground:
             self._at = at
             self._frame.position = at
 
-    def _draw(
-        self, name: str, segments: NDArray[np.float32], ink: Rgb | NDArray[np.uint8], thickness: float
-    ) -> None:
-        self._scene.add_line_segments(name, segments, ink, thickness=thickness, thickness_units="screen")
+    def _lay(self, name: str, parts: list[Part]) -> None:
+        self._scene.add_glb(name, glb(parts), cast_shadow=False, receive_shadow=False)
+
+
+def lines(name: str, segments: NDArray[np.float32], ink: Rgb, width_m: float) -> Part:
+    """Segments as strips on the floor in one colour."""
+    vertices, faces = ribbons(segments, width_m)
+    return Part(name, vertices, faces, np.tile(linear(ink), (len(vertices), 1)), open=True)
+
+
+def fading_lines(
+    name: str, segments: NDArray[np.float32], ink: Rgb, into: Rgb, reach_m: float, width_m: float
+) -> Part:
+    """The same, fading into the sky; wider far away, where a strip would else be less than a point wide."""
+    vertices, faces = ribbons(segments, width_m * (1.0 + distance(segments) / WIDER_M))
+    colours = np.repeat(fading(segments, ink, into, reach_m), 2, axis=1).reshape(-1, 3)
+    return Part(name, vertices, faces, colours, open=True)

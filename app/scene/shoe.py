@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -13,11 +14,15 @@ from numpy.typing import NDArray
 from app.motion import Quaternion, Role, Vector
 from app.rotation import from_yaw
 from app.scene import private
+from app.scene.baked import apart, lit
 from app.scene.colours import FOOT, Rgb, shade
+from app.scene.glb import Part, glb
 
 ASSET = Path(__file__).resolve().parents[2] / "assets" / "shoe.npz"
 #: The sensor's height above the floor while the shoe stands flat (tools/make_shoe.py).
 SENSOR_HEIGHT_M = 0.112
+#: How much of a ghost is there.
+SHEER = 0.32
 
 Mesh = tuple[NDArray[np.float32], NDArray[np.uint32]]
 
@@ -46,6 +51,39 @@ def paint(colour: Rgb) -> dict[str, Rgb]:
         "tongue": shade(colour, 0.84), "laces": (240, 242, 244), "sensor": (36, 40, 48),
         "light": (130, 255, 170),
     }  # fmt: skip
+
+
+@cache
+def solid(role: Role) -> bytes:
+    """The shoe in the colour of its foot, as binary glTF: one mesh."""
+    made = []
+    for name, (vertices, faces) in parts(role is Role.LEFT).items():
+        mesh = apart(vertices, faces) if name == "sensor" else (vertices, faces)
+        made.append((*mesh, lit(*mesh, paint(FOOT[role])[name])))
+    return glb([_joined(made, clear=False)])
+
+
+@cache
+def sheer(role: Role, colour: Rgb) -> bytes:
+    """The shoe in one colour that lets what is behind it shine through: a ghost, without small parts."""
+    made = []
+    for name, mesh in parts(role is Role.LEFT).items():
+        if name not in ("lining", "light", "stripe", "laces"):
+            made.append((*mesh, np.pad(lit(*mesh, colour), ((0, 0), (0, 1)), constant_values=SHEER)))
+    return glb([_joined(made, clear=True)])
+
+
+def _joined(
+    made: Sequence[tuple[NDArray[np.float32], NDArray[np.uint32], NDArray[np.float32]]], clear: bool
+) -> Part:
+    starts = np.cumsum([0, *(len(vertices) for vertices, _, _ in made)])
+    faces = np.concatenate(
+        [faces + np.uint32(start) for (_, faces, _), start in zip(made, starts, strict=False)]
+    )
+    return Part(
+        "shoe", np.concatenate([vertices for vertices, _, _ in made]), faces,
+        np.concatenate([colours for _, _, colours in made]), clear=clear, open=True,
+    )  # fmt: skip
 
 
 class Shadow:
@@ -87,15 +125,8 @@ class Shoe:
     def __init__(self, scene: viser.SceneApi, name: str, role: Role, ghost: Rgb | None = None) -> None:
         self.frame = scene.add_frame(name, show_axes=False, axes_length=0.09, axes_radius=0.0022)
         self._last: tuple[Quaternion, Vector] | None = None
-        colours = paint(FOOT[role] if ghost is None else ghost)
-        for part, (vertices, faces) in parts(role is Role.LEFT).items():
-            if ghost is not None and part in ("lining", "light", "stripe", "laces"):
-                continue
-            scene.add_mesh_simple(
-                f"{name}/{part}", vertices, faces, color=colours[part] if ghost is None else ghost,
-                opacity=None if ghost is None else 0.32, flat_shading=part == "sensor", side="double",
-                cast_shadow=False, receive_shadow=False,
-            )  # fmt: skip
+        made = solid(role) if ghost is None else sheer(role, ghost)
+        scene.add_glb(f"{name}/body", made, cast_shadow=False, receive_shadow=False)
 
     def pose(self, q_nb: Quaternion, position: Vector) -> None:
         """Where it is now; nothing is sent while it has not moved."""

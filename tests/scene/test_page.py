@@ -40,7 +40,7 @@ def with_foot(snapshot: Snapshot, **changes: Any) -> Snapshot:
 
 def test_one_foot_and_two(scene: Scene) -> None:
     scene.draw(fakes.snapshot(5.0), fakes.status())
-    assert {"/ned", "/ned/foot", "/ned/foot/upper", "/ned/ground", "/ned/compass"} <= names(scene)
+    assert {"/ned", "/ned/foot", "/ned/foot/body", "/ned/ground", "/ned/compass"} <= names(scene)
     scene.draw(fakes.snapshot(5.0, two=True), fakes.status())
     drawn = {
         node
