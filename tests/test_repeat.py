@@ -114,6 +114,7 @@ async def replayed(
             taken += len(item)
             skipped += 1
         else:
+            assert not isinstance(item, m.Landing)  # nobody asked for one
             apply(session, item if isinstance(item, m.Order) else m.Order(item, "replay", 0))
         work.do()
     work.do(now=True)
