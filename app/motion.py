@@ -268,6 +268,14 @@ Truth = Callable[[str, Floats], tuple[Floats, Floats]]
 start, q_nb [n, 4]. Closed form, so any instant can be asked for."""
 
 
+class Outline(NamedTuple):
+    """A recording's trails as it tells them itself: shown while its samples are read."""
+
+    name: str
+    duration_s: float
+    ways: tuple[tuple[Role, NDArray[np.float32]], ...]  # [k, 2, 3] in n
+
+
 @dataclass(frozen=True)
 class SourceInfo:
     """What a source says of itself before its first sample."""
@@ -284,6 +292,7 @@ class SourceInfo:
     clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # a recording's, by sensor
     serials: Mapping[str, str] = field(default_factory=dict)  # serial numbers, by sensor, where known
     rod_m: float | None = None  # the sensor hangs on a pendulum of this length
+    outline: Outline | None = None
 
 
 class InputError(ValueError):

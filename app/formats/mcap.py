@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import struct
 import zlib
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
@@ -183,6 +183,58 @@ class Contents(NamedTuple):
     channels: dict[int, Channel]
     chunks: tuple[tuple[Message, ...], ...]
     closed: bool
+
+
+class Index(NamedTuple):
+    """What a closed file's summary says; of each chunk: where it is, how long, and its channels."""
+
+    channels: dict[int, Channel]
+    chunks: tuple[tuple[int, int, frozenset[int]], ...]
+    start_ns: int
+    end_ns: int
+
+
+_FOOT = struct.Struct("<BQQQI8s")  # opcode, length, summary's start, offsets' start, crc, magic
+
+
+def index(size: int, read_at: Callable[[int, int], bytes]) -> Index | None:
+    """A file's index, by ``read_at`` (offset, count) alone; None if it is not closed or not whole."""
+    foot = read_at(max(0, size - _FOOT.size), _FOOT.size)
+    if len(foot) < _FOOT.size or read_at(0, len(MAGIC)) != MAGIC:
+        return None
+    opcode, length, start, _, crc, magic = _FOOT.unpack(foot)
+    if (opcode, length, magic) != (_FOOTER, 20, MAGIC) or not len(MAGIC) <= start <= size - _FOOT.size:
+        return None
+    if size - start > LARGEST:
+        return None
+    summary = read_at(start, size - _FOOT.size - start)
+    rows = table(summary)
+    if zlib.crc32(summary + foot[:-12]) != crc or rows is None:
+        return None
+    channels: dict[int, Channel] = {}
+    if not define(summary, rows, channels):
+        return None
+    own = rows[rows[:, At.OPCODE] == _CHUNK_INDEX, At.BEGIN :].tolist()
+    try:
+        places = [_place(summary[begin:end]) for begin, end in own]
+    except struct.error:
+        return None
+    start_ns = min((start for (start, _), _ in places), default=0)
+    end_ns = max((end for (_, end), _ in places), default=0)
+    return Index(channels, tuple(chunk for _, chunk in places), start_ns, end_ns)
+
+
+def _place(entry: bytes) -> tuple[tuple[int, int], tuple[int, int, frozenset[int]]]:
+    """A chunk index: the time it spans, and the chunk."""
+    start, end, at, length, places = struct.unpack_from("<QQQQI", entry)
+    numbers = (number for number, _ in struct.iter_unpack("<HQ", entry[36 : 36 + places]))
+    return (start, end), (at, length, frozenset(numbers))
+
+
+def messages(chunks: bytes, channels: dict[int, Channel]) -> Iterator[Message]:
+    """The messages of chunks that stand one behind the other, of these channels."""
+    for records in whole_chunks(MAGIC + chunks):
+        yield from _messages(records, dict(channels)) or ()
 
 
 def recognises(data: bytes) -> bool:

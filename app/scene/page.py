@@ -14,6 +14,7 @@ from app.scene.controls import Controls, Submit
 from app.scene.follow import Glide, middle
 from app.scene.ground import Ground
 from app.scene.head import head
+from app.scene.outline import OutlineLines
 from app.scene.panel import Panel
 from app.scene.reference import ReferenceLine
 from app.scene.shoe import SENSOR_HEIGHT_M
@@ -49,6 +50,7 @@ class Scene:
         self._ground = Ground(self._server.scene, dark=True)
         self._stage = Stage(self._server.scene)
         self._reference = ReferenceLine(self._server.scene)
+        self._outline = OutlineLines(self._server.scene)
         self._theme(dark=True)
         self.panel = Panel(self._controls, self._set_view, self._view)
         self.head = head(self.panel.keys(), self.panel.resets())
@@ -66,6 +68,7 @@ class Scene:
         if now >= self._next_text:
             self._next_text = now + TEXT_S
             self._reference.draw(status.reference)
+            self._outline.draw(status.source.outline)
             self.panel.show_text(snapshot, status, self._view)
         self._server.flush()
 

@@ -15,7 +15,9 @@ from app import motion as m
 from app.home.key import key
 from app.outputs.files import beside
 from app.settings import Settings
+from app.shell.aside import aside
 from app.shell.shelf import SHARED, TRACK, Shelf, track
+from app.sources.glanced import glanced
 from app.sources.opening import open_source
 from app.sources.source import Source
 from app.warm import warm_up
@@ -72,21 +74,26 @@ class Librarian:
             self._say(str(error))
 
     async def _play(self, name: str) -> None:
-        source = await asyncio.to_thread(self._open, name)
-        self._opened(str(self.shelf.folder / name), source)
+        spec = f"replay:{await asyncio.to_thread(self.shelf.path, name)}"
+        soon = await asyncio.to_thread(glanced, spec)
+        if soon is not None:
+            self._opened(spec, soon)
+        await self._open(spec, True)
+
+    async def _open(self, spec: str, changes: bool) -> None:
+        """Read it, which may take seconds, and have it played."""
+        self._opened(spec, await aside(lambda: opened(spec, changes), "open"))
         self._say("")
+
+    def open(self, spec: str, changes: bool) -> None:
+        """Play what a SPEC names, as soon as it is read."""
+        self._send(self._open(spec, changes))
 
     async def _compare(self, name: str) -> None:
         """A GPS track does not take the walk's place: it is shown beside it."""
         path = await asyncio.to_thread(self.shelf.path, name)
         self.reference = await asyncio.to_thread(track, path, self._declination_deg)
         self._say("")
-
-    def _open(self, name: str) -> Source:
-        source = open_source(f"replay:{self.shelf.path(name)}", stretches=True, key=key())
-        if source.settings is not None:
-            warm_up(source.settings.estimator)
-        return source
 
     async def _share(self, name: str, settings: Settings) -> None:
         """In a process of its own: it is long work, and samples come first."""
@@ -124,3 +131,11 @@ class Librarian:
         new = await asyncio.to_thread(self.shelf.rename, name, to)
         self.files = await asyncio.to_thread(self.shelf.files)
         self._say(f"{name} is now {new}")
+
+
+def opened(spec: str, changes: bool) -> Source:
+    """The source of a SPEC, ready to be played."""
+    source = open_source(spec, changes=changes, stretches=True, key=key())
+    if source.settings is not None:
+        warm_up(source.settings.estimator)
+    return source

@@ -11,12 +11,10 @@ import contextlib
 import logging
 import math
 import signal
-import threading
 import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -39,9 +37,11 @@ from app.saving import Saver
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
+from app.shell.aside import aside
 from app.shell.before import Before
 from app.shell.librarian import Librarian
 from app.simulate import lab as lessons
+from app.sources.glanced import Glanced, glanced
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.source import Source
@@ -84,7 +84,8 @@ class Options:
 
 def walk(options: Options, tell: Callable[[str], None]) -> None:
     """Serve the walk until Ctrl-C. ``tell`` prints a line. Bad input is ``InputError``."""
-    source = open_source(options.source, changes=not options.told, stretches=True, key=key())
+    source: Source | None = glanced(options.source) if options.record is None else None
+    source = source or open_source(options.source, changes=not options.told, stretches=True, key=key())
     asyncio.run(Viewer(options, source).serve(tell))
 
 
@@ -182,6 +183,8 @@ class Viewer:
 
     async def _acquire(self) -> None:
         """Read the source; where another one comes, leave it for that one."""
+        if isinstance(self._source, Glanced):
+            self._librarian.open(self._options.source, changes=not self._options.told)
         await self._prepare()
         while True:
             reading = asyncio.create_task(self._read(), name="read")
@@ -270,22 +273,12 @@ class Viewer:
     async def _prepare(self) -> None:
         """Compile in a thread that does not hold up Ctrl-C, and say what is being compiled."""
         loop = asyncio.get_running_loop()
-        ready = loop.create_future()
 
         def tell(what: str) -> None:
-            loop.call_soon_threadsafe(self._say, f"Preparing {what} (slow only the first time)", math.inf)
-
-        def work() -> None:
-            try:
-                warm_up(self._options.settings.estimator, tell)
-                answer = partial(ready.set_result, None)
-            except Exception as error:
-                answer = partial(ready.set_exception, error)
             with contextlib.suppress(RuntimeError):  # the program has ended meanwhile
-                loop.call_soon_threadsafe(answer)
+                loop.call_soon_threadsafe(self._say, f"Preparing {what} (slow only the first time)", math.inf)
 
-        threading.Thread(target=work, name="prepare", daemon=True).start()
-        await ready
+        await aside(lambda: warm_up(self._options.settings.estimator, tell), "prepare")
         self._say("")
 
     def _role(self, sensor: str) -> m.Role:

@@ -10,7 +10,9 @@ import pytest
 from app import motion as m
 from app.settings import Settings
 from app.shell.librarian import Librarian
+from app.sources.glanced import Glanced
 from app.sources.source import Source
+from tests.formats.test_glance import WHOLE
 from tests.formats.walks import random_samples, write
 
 GPX = '<gpx><trk><trkseg><trkpt lat="48" lon="11"/><trkpt lat="48.001" lon="11"/></trkseg></trk></gpx>'
@@ -45,6 +47,21 @@ def test_a_recording_is_opened_with_the_settings_it_holds(folder: Path) -> None:
     assert source.info.name == "walk.mcap"
     assert source.settings == Settings()
     assert said[-1] == ""
+
+
+def test_a_large_recording_shows_its_trails_until_it_is_read(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("app.sources.glanced.LEAST_BYTES", 0)
+    (folder / "hour.mcap").write_bytes(WHOLE)
+    _, _, (soon, source) = asked(folder, m.Play("hour.mcap"))
+    assert isinstance(soon, Glanced)
+    assert soon.info.outline is not None
+    assert soon.link is m.Link.WAITING
+    with pytest.raises(m.InputError, match=r"seek: hour\.mcap is still being read"):
+        soon.control(m.Seek(1.0))
+    assert source.info.outline is None
+    assert source.info.name == "hour.mcap"
 
 
 def test_a_gps_track_leaves_the_walk_where_it_is(folder: Path) -> None:
