@@ -23,6 +23,8 @@ Ints = NDArray[np.int64]
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
 
+#: Where the door gives what is seen as one file to keep.
+HAND_IN = "/hand-in"
 #: Two stamps further apart than this are two segments: nothing is integrated across.
 GAP_NS = 250_000_000
 
@@ -293,6 +295,7 @@ class SourceInfo:
     serials: Mapping[str, str] = field(default_factory=dict)  # serial numbers, by sensor, where known
     rod_m: float | None = None  # the sensor hangs on a pendulum of this length
     outline: Outline | None = None
+    seed: int | None = None  # of a simulator's noise, and of the errors that the lab adds
 
 
 class InputError(ValueError):
@@ -882,6 +885,7 @@ class Status:
     preflight: PreflightView | None = None
     shelf: tuple[ShelfFile, ...] = ()
     errors: Mapping[str, float] | None = None  # of a simulated sensor, by name; None: it is no simulation
+    lesson: str = ""  # the one taken last
     reference: Reference | None = None
 
 

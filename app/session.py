@@ -22,7 +22,7 @@ from app.rotation import yaw_of
 from app.settings import Settings
 from app.tracks import Reestimation, SensorStore, Track, landed_track
 from app.trail import TrailBuilder
-from app.truth import TruePlace, TrueWalk, attitude, errors
+from app.truth import TruePlace, TrueWalk, attitude, errors, thinned
 
 #: Applied changes kept for the page.
 CHANGES = 200
@@ -441,6 +441,15 @@ class Session:
             own=self._look_at_own(),
             pendulum=self._look_at_pendulum(),
         )
+
+    def errors_so_far(self) -> dict[str, m.Floats]:
+        """The main track beside the truth over the whole walk that is kept, as ``Snapshot.errors``."""
+        found = {}
+        for sensor, true in self._true.items():
+            rows, store = self.main.feet[sensor].tracker.rows, self.stores[sensor]
+            wanted = thinned(rows.start, rows.end)
+            found[sensor] = errors(true.at(wanted, store, self.main.settings), rows)
+        return found
 
     def _look_at_own(self) -> dict[str, m.OwnView]:
         feet, settings = self.main.feet, self.main.settings

@@ -99,6 +99,12 @@ class TrueWalk:
         return places, [TruePlace(rows[k], t_s[k], places[k], turned[k]) for k in newest]
 
 
+def thinned(first: int, last: int) -> list[int]:
+    """Some rows from ``first`` to ``last`` (exclusive), as many as are kept at most, the newest with them."""
+    rows: list[int] = np.linspace(first, last - 1, min(KEPT, last - first)).astype(int).tolist()
+    return rows
+
+
 def errors(recent: Iterable[TruePlace], rows: Blocks) -> Floats:
     """Seconds, metres from the truth, pitch of the estimate's ``rows`` [n, 12] and of the truth: [k, 4]."""
     found = [

@@ -20,6 +20,7 @@ from app.door.entrance import Entrance
 from app.door.files import Files
 from app.door.gate import Gate
 from app.door.greeting import greeting
+from app.door.hand_in import HandIn
 from app.door.ingest import Ingest, Taker
 from app.door.listening import bind
 from app.door.service import Service, Told
@@ -36,7 +37,7 @@ class Door:
     ``rules()`` says what a browser may write, by control; ``health()`` is what ``/healthz`` tells
     anybody on this machine, and ``measures()`` what ``/metrics`` does, so nothing secret. All are
     called on the door's thread and must not block. ``extra_head`` is our own markup for the page's head,
-    ``files`` the library, ``taker`` takes the samples that phones send.
+    ``files`` the library, ``hand_in`` makes a file of what is seen, ``taker`` takes phones' samples.
     """
 
     def __init__(
@@ -50,13 +51,14 @@ class Door:
         extra_head: str = "",
         files: Files | None = None,
         taker: Taker | None = None,
+        hand_in: HandIn | None = None,
     ) -> None:
         self.counters = Counters()
         self.access = access
         self._viser_port, self._rules, self._extra_head = viser_port, rules, extra_head
         self._told = Told(health, measures)
         self._files = files
-        self._taker = taker
+        self._taker, self._hand_in = taker, hand_in
         self._thread: threading.Thread | None = None
         self._stop: Callable[[], object] | None = None
 
@@ -129,5 +131,6 @@ class Door:
             self.counters,
             Ingest(gate, self._taker),
             self._files,
+            self._hand_in,
         )
         await service.run(listener, secure, stopping, opened)

@@ -21,6 +21,7 @@ from app.door.exposition import CONTENT_TYPE, exposition, of_counters
 from app.door.files import Files
 from app.door.filter import Rules
 from app.door.gate import Refusal
+from app.door.hand_in import HandIn
 from app.door.ingest import Ingest
 from app.door.listening import HEAD_SECONDS, Reception
 from app.door.upstream import VISITOR, Upstream, open_session, say, say_starting
@@ -53,6 +54,7 @@ class Service:
     counters: Counters
     ingest: Ingest
     files: Files | None = None
+    hand_in: HandIn | None = None
 
     async def run(
         self,
@@ -91,8 +93,9 @@ class Service:
         self.ingest.add_routes(application.router)
         application.router.add_get("/", upstream.give_page)
         application.router.add_get("/index.html", upstream.give_page)
-        if self.files is not None:
-            self.files.add_routes(application.router)
+        for more in (self.files, self.hand_in):
+            if more is not None:
+                more.add_routes(application.router)
         application.router.add_get("/{path:.*}", upstream.give_file)
         return application
 

@@ -16,7 +16,7 @@ WIDTH, HEIGHT = 640, 340
 LEFT, RIGHT, TOP, BOTTOM = 72, 16, 12, 48
 #: More points than this cannot be told apart, and would make the report large.
 MOST_POINTS = 400
-MARKERS = 5
+MARKERS, LOOKS = 5, 7
 
 
 class Axis(NamedTuple):
@@ -46,7 +46,7 @@ class Axis(NamedTuple):
 def chart(plot: Plot) -> str:
     """The whole plot: axes with units, curves, a legend in words and shapes."""
     x, y = _axes(plot)
-    marks = "".join(_curve(i, curve, x, y) for i, curve in enumerate(plot.curves))
+    marks = "".join(_curve(_look(i, curve), curve, x, y) for i, curve in enumerate(plot.curves))
     return (
         f"<figure><figcaption>{escape(plot.title)}</figcaption>{_legend(plot.curves)}"
         f'<svg viewBox="0 0 {WIDTH} {HEIGHT}" role="img" aria-label="{escape(plot.title)}">'
@@ -54,6 +54,10 @@ def chart(plot: Plot) -> str:
         + (f"<p class=note>{escape(plot.note)}</p>" if plot.note else "")
         + "</figure>"
     )
+
+
+def _look(place: int, curve: Curve) -> int:
+    return place if curve.look is None else curve.look
 
 
 def _axes(plot: Plot) -> tuple[Axis, Axis]:
@@ -133,7 +137,7 @@ def _curve(number: int, curve: Curve, x: Axis, y: Axis) -> str:
         body += "".join(_marker(number, a, b) for a, b in _shown(px, py))
     else:
         body += f'<path class=line d="{_path(px, py)}"/>'
-    return f'<g class="c{number % 7}"><title>{escape(curve.label)}</title>{body}</g>'
+    return f'<g class="c{number % LOOKS}"><title>{escape(curve.label)}</title>{body}</g>'
 
 
 def _band(curve: Curve, every: int, x: Axis, y: Axis) -> str:
@@ -169,10 +173,10 @@ def _legend(curves: Sequence[Curve]) -> str:
     def key(number: int, curve: Curve) -> str:
         mark = _marker(number, 9.0, 6.0) if curve.dots else '<path class=line d="M0 6H18"/>'
         return (
-            f'<li class="c{number % 7}"><svg width="18" height="12" aria-hidden="true">{mark}</svg>'
+            f'<li class="c{number % LOOKS}"><svg width="18" height="12" aria-hidden="true">{mark}</svg>'
             f"{escape(curve.label)}</li>"
         )
 
     if len(curves) < 2:
         return ""
-    return "<ul class=legend>" + "".join(key(i, c) for i, c in enumerate(curves)) + "</ul>"
+    return "<ul class=legend>" + "".join(key(_look(i, c), c) for i, c in enumerate(curves)) + "</ul>"

@@ -8,13 +8,12 @@ from collections.abc import Mapping, Sequence
 from html import escape
 
 from app.outputs.chart import chart
+from app.outputs.chart_style import DARK, LIGHT, RULES
 from app.studies.words import Row, Study, Table, Verdict
 
-_STYLE = """
-:root{color-scheme:light dark;--ink:#1d2733;--soft:#5a6675;--paper:#fff;--line:#dde3ea;--card:#f6f8fa;
---c0:#0072b2;--c1:#d55e00;--c2:#009e73;--c3:#a8518a;--c4:#b07d00;--c5:#3a8fc4;--c6:#4a4a4a}
-@media(prefers-color-scheme:dark){:root{--ink:#e4e9ef;--soft:#9aa7b5;--paper:#14191f;--line:#303a45;
---card:#1b222a;--c0:#56b4e9;--c1:#f0904a;--c2:#2fc79b;--c3:#dd95c0;--c4:#e6b93c;--c5:#8fcdf5;--c6:#c4c4c4}}
+_STYLE = f""":root{{color-scheme:light dark;{LIGHT}}}
+@media(prefers-color-scheme:dark){{:root{{{DARK}}}}}{RULES}"""
+_PAGE = """
 body{margin:0 auto;max-width:76rem;padding:1.5rem;background:var(--paper);color:var(--ink);
 font:15px/1.5 system-ui,sans-serif}
 h1{font-size:1.5rem}h2{font-size:1.2rem;margin-top:2.5rem;border-top:1px solid var(--line);padding-top:1rem}
@@ -27,13 +26,6 @@ th{color:var(--soft);font-weight:600}td.n{text-align:right;white-space:nowrap}
 .reproduced::before{content:"✓";color:var(--c2)}.close::before{content:"≈";color:var(--c4)}
 .not-reproduced::before{content:"✗";color:var(--c1)}.no-data::before{content:"–";color:var(--soft)}
 .plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,30rem),1fr));gap:1.2rem}
-figure{margin:0;padding:.8rem;background:var(--card);border:1px solid var(--line);border-radius:.5rem}
-figcaption{font-weight:600}.note{color:var(--soft);margin:.3rem 0 0;font-size:.9em}
-.legend{list-style:none;display:flex;flex-wrap:wrap;gap:.1rem 1rem;padding:0;margin:.3rem 0;font-size:.85em}
-.legend svg{margin-right:.4em;vertical-align:middle}
-svg text{fill:var(--soft);font-size:12px}.mid{text-anchor:middle}.end{text-anchor:end}
-svg .axis{fill:var(--ink);font-size:13px}.grid{stroke:var(--line);fill:none}
-.line{fill:none;stroke-width:1.8;stroke-linejoin:round}.cross{stroke-width:1.8}.band{opacity:.2;stroke:none}
 summary{cursor:pointer;color:var(--soft)}code{font-size:.9em}
 """
 #: Curves differ by their dashes too, so that nobody needs to tell colours apart.
@@ -52,7 +44,7 @@ def report(studies: Sequence[Study], about: Mapping[str, str]) -> str:
     return (
         "<!doctype html><html lang=en><meta charset=utf-8>"
         '<meta name=viewport content="width=device-width,initial-scale=1">'
-        f"<title>Stridescope: the papers’ studies</title><style>{_STYLE}{_COLOURS}</style>"
+        f"<title>Stridescope: the papers’ studies</title><style>{_STYLE}{_PAGE}</style>"
         f"<h1>The papers’ studies</h1><p>{escape(_in_words(rows))}</p>{_contents(studies)}{body}"
         f"<h2>This run</h2>{_pairs(about)}</html>"
     )

@@ -15,11 +15,17 @@ def head(keys: dict[str, tuple[str, str]], resets: list[str]) -> str:
     """HTML for the page's ``<head>``; only our own files and viser's uuids go into it."""
     presses = {key: private.press(control, value) for key, (control, value) in keys.items()}
     small = ",".join(f'[id="{uuid}"]' for uuid in resets)
-    style = (HERE / "page.css").read_text(encoding="utf-8").replace("[data-reset]", f":is({small})")
-    for name, dark in (("dark", True), ("light", False)):
-        sky, horizon = css(theme(dark).sky), css(theme(dark).horizon)
-        style = style.replace(f"sky-{name}", f"linear-gradient({sky}, {horizon} 65%)")
+    ours = style().replace("[data-reset]", f":is({small})")
     script = (HERE / "page.js").read_text(encoding="utf-8").replace("KEY_PRESSES", json.dumps(presses))
     for name in ("present.js", "watching.js", "library.js"):
         script += (HERE / name).read_text(encoding="utf-8")
-    return f"<title>Stridescope</title><style>{style}</style><script>{script}</script>"
+    return f"<title>Stridescope</title><style>{ours}</style><script>{script}</script>"
+
+
+def style() -> str:
+    """Our style sheet."""
+    text = (HERE / "page.css").read_text(encoding="utf-8")
+    for name, dark in (("dark", True), ("light", False)):
+        sky, horizon = css(theme(dark).sky), css(theme(dark).horizon)
+        text = text.replace(f"sky-{name}", f"linear-gradient({sky}, {horizon} 65%)")
+    return text

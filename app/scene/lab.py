@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from functools import partial
 from html import escape
 from typing import Any
 
-from app.motion import GuiRule, SetErrors, Status, Swing, TakeLesson
+from app.motion import HAND_IN, GuiRule, SetErrors, Status, Swing, TakeLesson
 from app.scene.controls import Controls, Input
 from app.scene.tuning import title
 from app.simulate.lab import LESSONS, LIMITS, PERFECT
@@ -18,6 +18,11 @@ ELSEWHERE = (
 INTRODUCTION = (
     '<div class="ss-note">What is wrong with the sensor, from now on. The green line is the truth, and the'
     " last graph how far the estimate is from it.</div>"
+)
+#: A link, so that the browser saves what the door gives; the style sheet makes it a button.
+SAVE = (
+    f'<div class="ss-note"><a class="ss-save" href="{HAND_IN}" download>Save as one HTML file</a>'
+    "The walk so far beside the truth, the error, the lesson, all settings: opens anywhere, no network.</div>"
 )
 FARTHEST_DEG, USUAL_DEG = 80.0, 30.0
 
@@ -31,11 +36,12 @@ class LabTab:
         self._told, self._angle_deg, self._errors = controls.html(), USUAL_DEG, dict[str, Input]()
         self._sensor = controls.gui.add_folder("Sensor")
         with self._sensor:
-            controls.choice("", {x.name: self._lesson(x.name) for x in LESSONS})
-            self._notice, self._taken = controls.html(), ""
+            controls.choice("", {x.name: partial(TakeLesson, x.name) for x in LESSONS})
+            self._notice = controls.html()
             for name in LIMITS:
                 self._add(name)
             controls.choice("", {"Perfect sensor": lambda: SetErrors(_perfect())})
+            controls.gui.add_html(SAVE)
         with controls.gui.add_folder("Pendulum"):
             look = {"min": -FARTHEST_DEG, "max": FARTHEST_DEG, "step": 1.0, "initial_value": USUAL_DEG}
             rule = GuiRule("number", low=-FARTHEST_DEG, high=FARTHEST_DEG)
@@ -52,18 +58,11 @@ class LabTab:
         """The errors as they are; nothing to set where there is no simulation."""
         errors = status.errors
         self._told.show(ELSEWHERE if errors is None else INTRODUCTION)
-        self._notice.show(notice(self._taken))
+        self._notice.show(notice(status.lesson))
         self._sensor.visible = errors is not None
         for name, value in (errors or {}).items():
             self._errors[name].show(value)
         self._angle.show(self._angle_deg)
-
-    def _lesson(self, name: str) -> Callable[[], TakeLesson]:
-        def take() -> TakeLesson:
-            self._taken = name
-            return TakeLesson(name)
-
-        return take
 
     def _aim(self, angle_deg: float) -> None:
         self._angle_deg = angle_deg

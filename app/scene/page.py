@@ -76,6 +76,11 @@ class Scene:
         """What a browser may write into each control, by the control's uuid."""
         return self._controls.rules()
 
+    @property
+    def dark(self) -> bool:
+        """Whether the page is dark now."""
+        return self._view["dark"]
+
     def close(self) -> None:
         """Stop viser."""
         private.close_server(self._server)

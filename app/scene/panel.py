@@ -129,7 +129,7 @@ class Panel:
         """Words, figures and controls: at most ten times a second."""
         self._header.show(figures.header(status) + beat(time.time()))
         self._message.show(banner(status) + figures.message(snapshot, status))
-        self._feet.show(_cards(snapshot, view["own"]) + told(status.reference))
+        self._feet.show(swinging.cards(snapshot, view["own"]) + told(status.reference))
         self._phones[0].show("" if snapshot.main.feet else phones.code(status))
         self._phones[1].show(phones.code(status))
         self._soundness.show(snapshot, status)
@@ -150,11 +150,6 @@ class Panel:
     def show_graphs(self, snapshot: Snapshot) -> None:
         """The last seconds."""
         self._graphs.draw(snapshot)
-
-
-def _cards(snapshot: Snapshot, own: bool) -> str:
-    """A walk's, or a pendulum's."""
-    return swinging.card(snapshot.pendulum, snapshot) if snapshot.pendulum else figures.feet(snapshot, own)
 
 
 def _rate(snapshot: Snapshot, status: Status) -> float:

@@ -13,16 +13,19 @@ from html import escape
 import viser
 
 from app.motion import FootView, Snapshot
-from app.scene import figures, private, words
+from app.scene import figures, private, swinging, words
 from app.scene.follow import Glide, middle
 from app.scene.ground import Ground
 from app.scene.page import NED_WXYZ, in_view, place_camera
-from app.scene.walkers import Walkers, node_name
+from app.scene.stage import Stage
+from app.scene.walkers import node_name
 
 #: Where the labels stand: above a shoe, and above the walker's middle; metres, down is positive.
 OVER_SHOE_M, OVER_ALL_M = -0.32, -0.75
 #: The view follows so many times as closely as the live one, and from so many times as far away.
 CLOSER, BACK = 3.0, 1.35
+#: After this long the view stands still.
+SETTLED_S = 10.0
 #: The words change with every so many frames: faster nobody reads.
 WORDS_EVERY = 4
 POLICY = (
@@ -34,13 +37,13 @@ POLICY = (
 class Film:
     """Takes snapshots of a walk in order and gives the page that plays them."""
 
-    def __init__(self, server: viser.ViserServer, name: str, pace: float) -> None:
+    def __init__(self, server: viser.ViserServer, name: str, pace: float, dark: bool = True) -> None:
         """``pace``: seconds of the walk in a second of the film."""
-        self._server, self._name, self._pace = server, name, pace
+        self._server, self._name, self._pace, self._dark = server, name, pace, dark
         scene = server.scene
         self._root = scene.add_frame("/ned", wxyz=NED_WXYZ, show_axes=False)
-        self._ground = Ground(scene, dark=True)
-        self._walkers, self._glide = Walkers(scene), Glide()
+        self._ground = Ground(scene, dark=dark)
+        self._stage, self._glide = Stage(scene), Glide()
         self._labels: dict[str, viser.LabelHandle] = {}
         self._frames, self._written = 0, True
         place_camera(server, BACK)
@@ -48,18 +51,23 @@ class Film:
 
     def take(self, snapshot: Snapshot, lasts_s: float) -> None:
         """Show this for so many seconds of the film."""
-        places = self._walkers.draw(snapshot)
+        self.show(snapshot, lasts_s)
+        self._tape.insert_sleep(lasts_s)
+
+    def show(self, snapshot: Snapshot, elapsed_s: float = SETTLED_S) -> None:
+        """Show this ``elapsed_s`` after what was shown before; alone it is a picture to turn about."""
+        places = self._stage.draw(snapshot)
+        centre = self._glide.towards(middle(places), CLOSER * elapsed_s)
         self._written = self._frames % WORDS_EVERY == 0
         self._frames += 1
         self._say("title", self.title(snapshot), (*self._glide.centre[:2], OVER_ALL_M))
         roles = [foot.role for foot in snapshot.main.feet]
         for foot, place in zip(snapshot.main.feet, places, strict=False):
             name = node_name(foot.role, foot.sensor, roles)
-            self._say(name, told(foot), (place[0], place[1], place[2] + OVER_SHOE_M))
-        centre = self._glide.towards(middle(places), CLOSER * lasts_s)
+            line = swinging.told(snapshot.pendulum) if snapshot.pendulum else told(foot)
+            self._say(name, line, (place[0], place[1], place[2] + OVER_SHOE_M))
         private.force_pose(self._root, NED_WXYZ, in_view(centre))
         self._ground.reach(centre)
-        self._tape.insert_sleep(lasts_s)
 
     def title(self, snapshot: Snapshot) -> str:
         """Which walk, when in it, how fast it is played."""
@@ -77,13 +85,14 @@ class Film:
             label.text = text
         label.position = place
 
-    def page(self) -> str:
-        """The whole file."""
+    def page(self, beside: str = "") -> str:
+        """The whole file; ``beside`` is markup of ours that stands beside the scene."""
         head = (
             f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
             f"<title>{escape(self._name)} – Stridescope</title>"
         )
-        return self._tape.as_html(dark_mode=True).replace("<head>", f"<head>{head}", 1)
+        before, end, after = self._tape.as_html(dark_mode=self._dark).rpartition("</body>")
+        return before.replace("<head>", f"<head>{head}", 1) + beside + end + after
 
 
 def told(foot: FootView) -> str:
@@ -97,10 +106,10 @@ def told(foot: FootView) -> str:
 
 
 @contextlib.contextmanager
-def film(name: str, pace: float) -> Iterator[Film]:
+def film(name: str, pace: float, dark: bool = True) -> Iterator[Film]:
     """A film of a walk; its server is only there to write down what it would send."""
     server = private.open_server("Stridescope")
     try:
-        yield Film(server, name, pace)
+        yield Film(server, name, pace, dark)
     finally:
         private.close_server(server)

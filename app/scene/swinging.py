@@ -6,8 +6,13 @@ import math
 
 from app.motion import FootView, PendulumView, Snapshot
 from app.rotation import pitch_of
-from app.scene import words
+from app.scene import figures, words
 from app.scene.figures import Compared, tile
+
+
+def cards(snapshot: Snapshot, own: bool = False) -> str:
+    """The figures of what is seen: a pendulum's, or a walk's (``own`` as for ``figures.feet``)."""
+    return card(snapshot.pendulum, snapshot) if snapshot.pendulum else figures.feet(snapshot, own)
 
 
 def card(pendulum: PendulumView, snapshot: Snapshot) -> str:
@@ -46,6 +51,11 @@ def compared(pendulum: PendulumView) -> Compared:
 
 def _off(foot: FootView, pendulum: PendulumView) -> float:
     return abs(pitch_of(foot.q_nb) - pendulum.true_rad)
+
+
+def told(pendulum: PendulumView) -> str:
+    """The same in a line."""
+    return f"angle {_degrees(pendulum.angle_rad)}° · true {_degrees(pendulum.true_rad)}°"
 
 
 def _degrees(angle_rad: float, digits: int = 1) -> str:

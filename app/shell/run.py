@@ -25,6 +25,7 @@ from app.clocks import Clock, clock_for
 from app.door.access import Access
 from app.door.files import Files
 from app.door.front import Door
+from app.door.hand_in import HandIn
 from app.estimator import sweep as gains
 from app.formats.journal import Start
 from app.health import report
@@ -39,6 +40,7 @@ from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
 from app.shell.aside import aside
 from app.shell.before import Before
+from app.shell.hand_in import Seen, hand_in
 from app.shell.librarian import Librarian
 from app.simulate import lab as lessons
 from app.sources.glanced import Glanced, glanced
@@ -151,6 +153,7 @@ class Viewer:
                 extra_head=scene.head,
                 files=Files(self._librarian.shelf.folder, self._librarian.shelf.receive),
                 taker=self._source if isinstance(self._source, PhoneSource) else None,
+                hand_in=HandIn(hand_in(lambda: self._see(scene))),
             )
             closing.callback(door.stop)
             door.start()
@@ -207,7 +210,7 @@ class Viewer:
         self._options = replace(self._options, source=spec)
         self._before = Before(lambda: self._source.info, self._mark_preflight)
         self._session = self._new_session(source.settings or before.main.settings, before.epoch + 1)
-        self._status = replace(self._status, sweep=None, sweep_progress=None)
+        self._status = replace(self._status, sweep=None, sweep_progress=None, lesson="")
         self._last_sample_s = time.monotonic()
 
     def _new_session(self, settings: Settings, epoch: int) -> Session:
@@ -321,6 +324,7 @@ class Viewer:
                     self._source.control(errors)
                     self._apply(replace_command(order, m.ReplaceCandidate(settings, f"lesson {name}")))
                     self._apply(replace_command(order, m.ApplyCandidate()))
+                    self._status = replace(self._status, lesson=name)
                 case m.Swing(angle_deg):
                     spec = lessons.pendulum(angle_deg)
                     self._coming.put_nowait((spec, open_source(spec, stretches=True)))
@@ -504,6 +508,10 @@ class Viewer:
             shelf=self._librarian.files,
             reference=self._librarian.reference,
         )
+
+    def _see(self, scene: Scene) -> Seen:
+        session, made_by = self._session, self._source.made_by
+        return Seen(session.snapshot(), self._status_now(), session.errors_so_far(), made_by, scene.dark)
 
     def _say(self, message: str, seconds: float = MESSAGE_S) -> None:
         self._status = replace(self._status, message=message)

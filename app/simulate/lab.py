@@ -153,12 +153,14 @@ LESSONS = (
         " snap into place when the foot stands.",
     ),
     Lesson(
-        "Gyro bias", LabErrors(rate_bias_dps=0.5), {},
-        "The walk bends: nothing but the gyro knows the heading, and it turns half a degree every second."
-        " Stride lengths stay right, because each one begins anew from zero velocity.",
+        "Gyro bias", LabErrors(rate_bias_dps=0.5), {"bias_from_rest": False},
+        "The walk bends: nothing but the gyro knows the heading, it turns half a degree every second, and"
+        " what it shows at rest is not taken off here. Stride lengths stay right, because each one begins"
+        " anew from zero velocity.",
     ),
     Lesson(
-        "Gain to zero", LabErrors(rate_bias_dps=0.5), {"gain_stance": 0.0, "gain_swing": 0.0},
+        "Gain to zero", LabErrors(rate_bias_dps=0.5),
+        {"gain_stance": 0.0, "gain_swing": 0.0, "bias_from_rest": False},
         "Without feedback nothing holds level: gravity leaks into the acceleration and the height runs off."
         " Raise the stance gain and see it come back within a few strides.",
     ),

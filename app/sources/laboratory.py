@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import AsyncIterator, Iterable
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from typing import Any
 
 from app.motion import InputError, Recording, ReplayCommand, Sample, SetErrors, Stretch
@@ -15,10 +15,11 @@ from app.sources.source import Item
 class Laboratory(Replay):
     """The same replay, its samples spoilt on their way out; at first they are as simulated."""
 
-    def __init__(self, recording: Recording, **playing: Any) -> None:
-        """``playing``: as a ``Replay`` takes it."""
+    def __init__(self, recording: Recording, seed: int = 0, **playing: Any) -> None:
+        """``seed``: of the errors that chance has a part in; ``playing``: as a ``Replay`` takes it."""
         super().__init__(recording, **playing)
-        self._lab = Lab()
+        self.info = replace(self.info, seed=seed)
+        self._lab = Lab(seed)
         self.errors = asdict(PERFECT)
 
     def control(self, command: ReplayCommand) -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
+from functools import partial
 
 import numpy as np
 
@@ -47,7 +48,7 @@ def open_source(
     if spec.kind in LIVE:
         return open_live(spec)
     recording, truth = open_recording(spec)
-    kind = Laboratory if spec.kind == "sim" else Replay
+    kind = partial(Laboratory, seed=int(spec.options.get("seed", 0))) if spec.kind == "sim" else Replay
     return kind(
         recording, speed=spec.speed, loop=spec.loop, finish=finish, changes=changes and spec.changes,
         truth=truth, stretches=stretches, key=key,

@@ -39,13 +39,17 @@ class Row:
 
 
 class Curve(NamedTuple):
-    """One line of a plot, or its dots; ``spread`` draws a band of ± so much about it."""
+    """One line of a plot, or its dots; ``spread`` draws a band of ± so much about it.
+
+    Its look (colour, dashes, shape) is that of its place in the plot, or the one that ``look`` says.
+    """
 
     label: str
     x: Floats  # [n]
     y: Floats  # [n]
     dots: bool = False
     spread: Floats | None = None  # [n]
+    look: int | None = None
 
 
 @dataclass(frozen=True)

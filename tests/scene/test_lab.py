@@ -8,7 +8,7 @@ import pytest
 
 from app.motion import GuiRule, PendulumView
 from app.rotation import from_yaw_pitch_roll
-from app.scene import figures, lab, private, swinging
+from app.scene import figures, private, swinging
 from app.scene.page import Scene
 from app.simulate.lab import LESSONS, LIMITS, PERFECT
 from tests.scene import fakes
@@ -37,9 +37,9 @@ def test_it_shows_the_errors_and_hides_without_a_simulation(scene: Scene) -> Non
 
 @pytest.mark.parametrize("name", [x.name for x in LESSONS])
 def test_a_lesson_is_asked_for_and_said(scene: Scene, name: str) -> None:
-    tab = scene.panel._lab
-    assert tab._lesson(name)().name == name
-    assert name in lab.notice(tab._taken)
+    scene.draw(fakes.snapshot(3.0), replace(fakes.status(), errors=asdict(PERFECT), lesson=name))
+    assert name in scene.panel._lab._notice._text
+    assert any(name in rule.choices for rule in scene.rules().values())
 
 
 def test_a_pendulum_hangs_instead_of_the_shoes(scene: Scene) -> None:

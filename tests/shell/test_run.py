@@ -18,7 +18,7 @@ import pytest
 from playwright.sync_api import Browser, Page
 
 from tests.refusals import refused
-from tests.scene.pages import PATIENCE_MS, open_page, pixels
+from tests.scene.pages import DRAWN, PATIENCE_MS, open_page, pixels
 
 #: A walk of a minute; drawn small, because a test machine has no graphics card.
 SOURCE = "sim:walk?path=eight&size=6&duration=60&rate=100&still=1&noise=0.3"
@@ -147,6 +147,33 @@ def test_a_reload_in_mid_walk_shows_the_present(page: Page) -> None:
         " && window.__viserMutable.nodeRefFromName['/ned/foot']",
         timeout=PATIENCE_MS,
     )
+
+
+def test_one_click_saves_what_is_seen_as_a_page_that_needs_no_network(
+    browser: Browser, page: Page, tmp_path: Path, build_dir: Path
+) -> None:
+    page.get_by_text("Lab", exact=True).first.click()
+    page.get_by_role("button", name="Gyro bias").click()
+    page.get_by_text("The walk bends").wait_for(timeout=PATIENCE_MS)
+    with page.expect_download(timeout=PATIENCE_MS) as coming:
+        page.get_by_text("Save as one HTML file").click()
+    kept = tmp_path / coming.value.suggested_filename
+    coming.value.save_as(kept)
+    assert kept.name.startswith("sim-walk-Gyro-bias-")
+    context = browser.new_context(offline=True, viewport={"width": 1100, "height": 700})
+    alone = context.new_page()
+    asked: list[str] = []
+    alone.on("request", lambda r: asked.append(r.url) if r.url.startswith(("http", "ws")) else None)
+    alone.goto(kept.as_uri())
+    for node in ("/ned/foot", "/ned/trail/foot_truth/growing"):
+        alone.wait_for_function(DRAWN, arg=node, timeout=PATIENCE_MS, polling=500)
+    text = alone.locator("#sheet").inner_text()
+    for said in ("The walk bends", "Error to truth", "0.5 °/s", "Minimum duration", "noise=0.3", "Seed"):
+        assert said in text
+    assert alone.locator("#sheet figure path.line").count() >= 3
+    alone.screenshot(path=build_dir / "hand_in.png", timeout=PATIENCE_MS)
+    context.close()
+    assert asked == []
 
 
 # --- without a browser ---------------------------------------------------------------------------------

@@ -66,12 +66,12 @@ def test_a_value_is_in_range_or_refused(name: str, value: float) -> None:
             PERFECT.with_changes({name: value})
 
 
-def walked(lesson: Lesson) -> Session:
-    """The lesson taken after the still start, half way along a straight walk."""
+def walked(lesson: Lesson, taken_ns: int = 2_000_000_000) -> Session:
+    """A straight walk; the lesson is taken after the still start."""
     made = make_walk({"distance_m": "40", "rate_hz": "100"})
     session, lab = Session(lesson.settings, truth=made.truth), Lab()
     for sample in one_by_one(made.recording.sensors[0]):
-        if sample.device_ns > 2_000_000_000:
+        if sample.device_ns >= taken_ns:
             lab.errors = lesson.errors
         read = lab.spoil(sample)
         if read is not None:
@@ -98,6 +98,13 @@ def test_a_gyro_bias_bends_the_walk_but_not_its_strides(taken: dict[str, Session
     foot = taken["Gyro bias"].snapshot().main.feet[0]
     assert error_m(taken["Gyro bias"]) > 1.0
     assert foot.distance_m == pytest.approx(taken["Perfect"].snapshot().main.feet[0].distance_m, rel=0.02)
+
+
+@pytest.mark.parametrize("name", ["Gyro bias", "Gain to zero"])
+def test_a_bias_that_was_there_in_the_still_start_is_seen_too(name: str) -> None:
+    """As where a replay begins anew with the errors set: else the lesson would show nothing."""
+    (lesson,) = (one for one in LESSONS if one.name == name)
+    assert error_m(walked(lesson, 0)) > 1.0
 
 
 def test_without_gains_the_height_runs_off(taken: dict[str, Session]) -> None:
