@@ -98,6 +98,11 @@ class Terminal:
         self._waiting += kept
         self._flush()
 
+    async def emptied(self) -> None:
+        """Wait until all that was written is the host's, or no host is there."""
+        while self._hosted and self._waiting:
+            await asyncio.sleep(_LOOK_S)
+
     def close(self) -> None:
         """Take it away, and its link."""
         self.unplug()

@@ -26,7 +26,7 @@ GX1_FAST_BAUD = 115200
 #: More than so much waiting to be sent, and a measurement is passed over: the line is too slow for it.
 BACKLOG_S = 0.25
 #: After the last sample, so that the host can fetch it before the port goes.
-LINGER_S = 0.5
+LINGER_S = 2.0
 _CHUNK = 64
 _TIMER_S = 0.001  # a timer may ring this much early
 NO_FAULTS = Faults()
@@ -89,7 +89,9 @@ class Emulator:
             tasks += [loop.create_task(self._brown_out(o.at_s, o.seconds)) for o in self._faults.brownouts]
             async for sample, due_s in self._samples():
                 self._measure(sample, due_s)
-            await asyncio.sleep(max(self._free_s - loop.time(), 0.0) + self._faults.burst_s + LINGER_S)
+            await asyncio.sleep(max(self._free_s - loop.time(), 0.0) + self._faults.burst_s)
+            await self._terminal.emptied()
+            await asyncio.sleep(LINGER_S)
         finally:
             for task in tasks:
                 task.cancel()

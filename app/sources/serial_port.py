@@ -173,22 +173,40 @@ class SerialPort(Live):
             except PortLostError:
                 await port.read(0.0)  # gone altogether? else it may be another sensor by now
                 started = await start(port, self._spec.wish, self._tell)
-        if self._decoder is None or _another(known, started):
+        self._adopt(started)
+        self._take(time.monotonic_ns(), started.heard)
+
+    def _adopt(self, started: Started) -> None:
+        """It sends: its decoder goes on, or another sensor's begins."""
+        if self._decoder is None or _another(self._started, started):
             axes = self._spec.axes or started.kind.axes
             self._decoder = started.kind.decoder(self._spec.foot, axes, started.setup)
             self._seam.cut()
         self._started = started
-        self._take(time.monotonic_ns(), started.heard)
+
+    async def _wake(self, port: Port, known: Started, silence: str) -> None:
+        """Start a sensor that fell silent, on the open port: one that merely lagged loses nothing by it."""
+        log.info("%s (after %d samples)", silence, self._seam.taken)
+        self._link, self._detail = Link.LOST, f"{silence}; asking it"
+        self._losses += 1
+        found = Found(known.device, known.evidence)
+        rate_hz = self._spec.wish.rate_hz
+        self._adopt(await start_known(port, known.baud, found, rate_hz, self._tell, tap=self._take))
 
     async def _read(self, port: Port) -> None:
         """Decode what comes, until it ends in ``PortLostError``."""
-        patience_s = SILENT_AT_FIRST_S
+        patience_s, asked = SILENT_AT_FIRST_S, True
         sample_s = time.monotonic()
         while True:
             arrived = await port.read(patience_s)
             if not arrived:
-                raise PortLostError(f"{port.path}: nothing came for {patience_s:g} s: check its power")
-            patience_s = SILENT_S
+                silence = f"{port.path}: nothing came for {patience_s:g} s: check its power"
+                if asked or self._started is None:
+                    raise PortLostError(silence)
+                await self._wake(port, self._started, silence)
+                patience_s, asked = SILENT_AT_FIRST_S, True
+                continue
+            patience_s, asked = SILENT_S, False
             for host_ns, data in arrived:
                 if self._take(host_ns, data):
                     sample_s = time.monotonic()

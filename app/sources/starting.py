@@ -17,6 +17,8 @@ from app.sources.port import Port, PortLostError
 Result = TypeVar("Result")
 #: Hears in a few words what is being tried.
 Tell = Callable[[str], None]
+#: Hears every piece that comes, with its arrival in ns, whatever it answers.
+Tap = Callable[[int, bytes], object]
 #: What is asked for where nobody says a rate: enough for walking, and 115200 baud carry it.
 USUAL_HZ = 100.0
 #: Where few bytes come that are nothing known yet, this much more is listened: some sensors are slow.
@@ -60,13 +62,19 @@ async def start(port: Port, wish: Wish, tell: Tell) -> Started:
 
 
 async def start_known(
-    port: Port, baud: int, found: Found, rate_hz: float | None, tell: Tell, heard: bytes = b""
+    port: Port,
+    baud: int,
+    found: Found,
+    rate_hz: float | None,
+    tell: Tell,
+    heard: bytes = b"",
+    tap: Tap | None = None,
 ) -> Started:
     """Start a sensor of which is known what it is; the port is at ``baud``."""
     kind = KINDS[found.device]
     if kind.start_up is None:
         return Started(found.device, baud, found.evidence, None, heard)
-    talk = await converse(port, kind.start_up(asked_rate(kind, baud, rate_hz)), tell)
+    talk = await converse(port, kind.start_up(asked_rate(kind, baud, rate_hz)), tell, tap)
     if talk.failed:
         raise PortLostError(talk.failed)
     return Started(found.device, baud, found.evidence, talk.result, talk.left_over)
@@ -78,7 +86,7 @@ def asked_rate(kind: Kind, baud: int, wanted_hz: float | None) -> float:
     return min(wanted_hz if wanted_hz is not None else USUAL_HZ, kind.fastest_hz, carried_hz)
 
 
-async def converse(port: Port, script: Script[Result], tell: Tell) -> Talk[Result]:
+async def converse(port: Port, script: Script[Result], tell: Tell, tap: Tap | None = None) -> Talk[Result]:
     """Hold a conversation to its end."""
     talk = Talk(script)
     while (ask := talk.ask) is not None:
@@ -92,6 +100,9 @@ async def converse(port: Port, script: Script[Result], tell: Tell) -> Talk[Resul
             if not arrived:
                 talk.expire()
                 break
+            if tap is not None:
+                for host_ns, data in arrived:
+                    tap(host_ns, data)
             answered = talk.receive(b"".join(data for _, data in arrived))
     return talk
 
