@@ -500,6 +500,11 @@ class Swing:
 
 
 @dataclass(frozen=True)
+class OpenTown:
+    """Open the town mode beside the walk, with simulated feet."""
+
+
+@dataclass(frozen=True)
 class Record:
     """Begin or end a recording."""
 
@@ -572,6 +577,7 @@ Command = (
     | MoverCommand
     | TakeLesson
     | Swing
+    | OpenTown
 )
 
 
@@ -887,6 +893,7 @@ class Status:
     errors: Mapping[str, float] | None = None  # of a simulated sensor, by name; None: it is no simulation
     lesson: str = ""  # the one taken last
     reference: Reference | None = None
+    town: str = ""  # where the town mode is, while it is open
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import viser
 
 from app.motion import ResetHeading, RestartHere, Snapshot, Status
 from app.scene import figures, phones, swinging
+from app.scene.annexe import Town
 from app.scene.beat import beat
 from app.scene.before import BeforeTab
 from app.scene.controls import Ask, Controls, Html, Input
@@ -89,6 +90,7 @@ class Panel:
     def _view_tab(self, gui: viser.GuiApi, view: View) -> dict[str, Input]:
         again: dict[str, Ask] = {"Reset heading": ResetHeading, "Restart from here": RestartHere}
         self._walk = self._controls.choice("Walk", again)
+        self._town = Town(self._controls)
         labels = {"follow": "Follow the walker", "dark": "Dark mode", "axes": "Sensor axes"}
         labels["own"] = "Sensor's own orientation"
         hints = {
@@ -144,6 +146,7 @@ class Panel:
         self._profiles.show(status)
         self._before.show(status)
         self._lab.show(status)
+        self._town.show(status)
         for name, control in self._switches.items():
             control.show(view[name])
 

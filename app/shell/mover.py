@@ -39,6 +39,7 @@ log = logging.getLogger(__name__)
 
 FRAME_S = 1 / 60
 AWAY_S = 0.004
+STILL_S = 0.5
 MESSAGE_S = 6.0
 #: The walk that OSC calls 1.
 FULL_MPS = 2.0
@@ -188,17 +189,26 @@ class Mover:
 
     async def _run(self, scene: MoverScene) -> None:
         """Everything at once, until cancelled. A source that ends is silent from then on."""
-        scene.draw(self._visiting.still(time.monotonic_ns(), "Preparing the feet (slow only the first time)"))
+        still = asyncio.create_task(self._stand_still(scene))
         await prepared(warm_gestures)
         attitude = asyncio.create_task(prepared(warm_attitude))  # for whoever chooses the papers' decoder
         if self._options.decoder == "papers":
             await attitude
+        still.cancel()
         self._visiting.visitors = visitors.names()
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self._draw(scene))
             tasks.create_task(self._obey())
             for feed in self._feeds:
                 tasks.create_task(self._acquire(feed))
+
+    async def _stand_still(self, scene: MoverScene) -> None:
+        """Again and again: a page that hears nothing for long says that the program is gone."""
+        while True:
+            scene.draw(
+                self._visiting.still(time.monotonic_ns(), "Preparing the feet (slow only the first time)")
+            )
+            await asyncio.sleep(STILL_S)
 
     # --- in ---------------------------------------------------------------------------------------
 

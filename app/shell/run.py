@@ -38,6 +38,7 @@ from app.saving import Saver
 from app.scene.page import Scene
 from app.session import DEFAULT_BUDGET, Session
 from app.settings import Settings
+from app.shell.annexe import Annexe
 from app.shell.aside import aside
 from app.shell.before import Before
 from app.shell.hand_in import Seen, hand_in
@@ -105,6 +106,7 @@ class Viewer:
             options.reference,
             options.declination_deg,
         )
+        self._annexe = Annexe(options.access, lambda line: self._say(line))
         self._session = self._new_session(source.settings or options.settings, 0)
         self._recorder: Recorder | None = None
         self._saver = Saver()
@@ -161,7 +163,10 @@ class Viewer:
                 tell(line)
             if self._options.open_browser:
                 open_in_browser(door.address)
-            await self._run(scene)
+            try:
+                await self._run(scene)
+            finally:
+                await self._annexe.close()
             self._give_up = True
 
     async def _run(self, scene: Scene) -> None:
@@ -319,6 +324,8 @@ class Viewer:
                     self._say(self._before.calibrate(command))
                 case m.CheckFirst() as command:
                     self._before.check(command, {s: store.role for s, store in self._session.stores.items()})
+                case m.OpenTown():
+                    self._annexe.open()
                 case m.TakeLesson(name):
                     errors, settings = lessons.lesson(name)
                     self._source.control(errors)
@@ -507,6 +514,7 @@ class Viewer:
             recording=self._recorder.state if self._recorder else self._status.recording,
             shelf=self._librarian.files,
             reference=self._librarian.reference,
+            town=self._annexe.address,
         )
 
     def _see(self, scene: Scene) -> Seen:
