@@ -163,6 +163,13 @@ class Rows(NamedTuple):
     last: int
 
 
+class GyroBias(NamedTuple):
+    """A sensor's gyro bias as found once: what it reads at rest, in its axes, and σ of each, rad/s."""
+
+    rate_b: Vector
+    doubt_radps: Vector
+
+
 @dataclass(frozen=True, eq=False)
 class Stretch:
     """Many samples of a recording at once, as a seek passes over them.
@@ -418,9 +425,19 @@ class LookBack:
     """The walk stands still or is over: if its settings ask for hindsight, smooth it as far as it goes."""
 
 
+@dataclass(frozen=True)
+class KnowBias:
+    """Before a sensor's first sample: its gyro bias as remembered, for the walk to begin with."""
+
+    sensor: str
+    rate_b: Vector  # rad/s
+    doubt_radps: Vector
+    source: str  # when it was found, in words
+
+
 SessionCommand = (
     SetCandidate | ReplaceCandidate | ApplyCandidate | DropCandidate | Undo
-    | SetApplyAtOnce | KeepAs | SwapAB | ResetHeading | RestartHere | LookBack
+    | SetApplyAtOnce | KeepAs | SwapAB | ResetHeading | RestartHere | LookBack | KnowBias
 )  # fmt: skip
 
 

@@ -61,7 +61,8 @@ class Session:
         self.changes: list[m.Change] = []
         self.log: list[tuple[int, m.Order]] = []  # orders, each with the number it was taken under
         self.stores: dict[str, SensorStore] = {}
-        self.main = Track(f"main{epoch}", settings)
+        self.biases: dict[str, m.GyroBias] = {}  # known before the walk, by sensor
+        self.main = Track(f"main{epoch}", settings, self.biases)
         self.candidate: Track | None = None
         self._roles = roles
         self._truth, self._rod_m = truth, rod_m
@@ -137,7 +138,8 @@ class Session:
         track = landed_track(f"landed{self.number}", self.main.settings, landing)
         if track is None:
             return False
-        self.main = self._landed = track
+        self.main, track.biases = track, self.biases
+        self._landed = track
         self.take_stretch(landing.stretch)
         fill = Reestimation(0, track.settings, {}, {}, True, "", "", 0, self.number, track.settings)
         self.filling = self._fresh(fill)
@@ -217,6 +219,8 @@ class Session:
                 self._reset_heading(order)
             case m.RestartHere():
                 self._restart(order)
+            case m.KnowBias():
+                self._know_bias(order, command)
             case m.LookBack():
                 self._look_back(order)
             case _:
@@ -264,7 +268,7 @@ class Session:
             foot.tracker.rows.end < self.stores[sensor].samples.start for sensor, foot in track.feet.items()
         ):
             return False
-        bases = self.main.bases()
+        bases, track.biases = self.main.bases(), self.biases
         for sensor, store in self.stores.items():
             if store.samples:
                 track.drop_before(sensor, store.samples.start)
@@ -299,7 +303,8 @@ class Session:
         """The same job, for the samples that are here now."""
         self._jobs += 1
         stores = {sensor: store.samples.share() for sensor, store in self.stores.items() if store.samples}
-        return replace(job, number=self._jobs, epoch=self.epoch, stores=stores, bases=self.main.bases())
+        job = replace(job, number=self._jobs, epoch=self.epoch, biases=dict(self.biases))
+        return replace(job, stores=stores, bases=self.main.bases())
 
     def _apply_candidate(self, order: m.Order) -> None:
         why = self._job(order, self.candidate_settings, True, "applied")
@@ -360,6 +365,14 @@ class Session:
             job = self._job(order, settings, True, LOOKED_BACK)
             self.wanted = self._fresh(replace(job, look_back=True))
 
+    def _know_bias(self, order: m.Order, known: m.KnowBias) -> None:
+        """A sensor's gyro bias from before: only a walk that has not begun can begin with it."""
+        if known.sensor in self.stores:
+            raise m.InputError(f"gyro bias of {known.sensor}: its walk has begun, expected before")
+        self.biases[known.sensor] = m.GyroBias(known.rate_b, known.doubt_radps)
+        what = f"{known.sensor}: gyro bias remembered, {known.source}"
+        self._note(m.Change(self.number, order.host_ns, order.who, what))
+
     def _reset_heading(self, order: m.Order) -> None:
         if (
             self._coming is not None
@@ -382,11 +395,11 @@ class Session:
         self._errors, self._errors_at = {}, {}
         self._own = {}
         self.wanted, self._next, self.candidate, self.filling = None, None, None, None
-        self.main = Track(f"main{self.epoch}", self.main.settings)
+        self.main = Track(f"main{self.epoch}", self.main.settings, self.biases)
         if coming is not None:
-            self._make_main(Track(f"main{self.epoch}", coming.settings), coming)
+            self._make_main(Track(f"main{self.epoch}", coming.settings, self.biases), coming)
         if shown != self.main.settings:  # the sliders stay where they are
-            self.candidate = Track(f"candidate{self.epoch}", shown)
+            self.candidate = Track(f"candidate{self.epoch}", shown, self.biases)
 
     def _keep_budget(self) -> None:
         """Let old blocks go; a candidate's place is kept free, so that what goes depends on samples only."""

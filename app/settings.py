@@ -210,6 +210,15 @@ class Settings:
         ),
     )  # fmt: skip
 
+    remembered_bias: bool = _setting(
+        True,
+        Limit(
+            "Remembered gyro bias", "", "",
+            "Begin with what is remembered of this sensor's gyro bias, if anything is; a still start"
+            " outweighs it.",
+            only="kalman",
+        ),
+    )  # fmt: skip
     hindsight: bool = _setting(
         False,
         Limit(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -22,6 +22,7 @@ from app.motion import (
     Footprint,
     FootView,
     GaitPhase,
+    GyroBias,
     Landing,
     Quaternion,
     Role,
@@ -40,6 +41,8 @@ from app.truth import TruePlace, error_m
 NO_FIELD = (math.nan, math.nan, math.nan)
 #: m/s², rad/s or µT: no sensor reads that, and its square would spoil every sum (as in formats/clean).
 MOST = 1e6
+Biases = Mapping[str, GyroBias]
+NO_BIASES: Biases = {}
 #: Footprints shown.
 FOOTPRINTS = 40
 #: Standing longer than this many stride durations (and 1.5 s) after a contact is not walking.
@@ -152,10 +155,17 @@ def _field_or_none(field: Vector | None) -> Vector:
 class FootTrack:
     """One sensor's part of a track: the tracker, and the trail of its settled rows."""
 
-    def __init__(self, name: str, store: Blocks, settings: Settings, base: Checkpoint | None = None) -> None:
+    def __init__(
+        self,
+        name: str,
+        store: Blocks,
+        settings: Settings,
+        base: Checkpoint | None = None,
+        known: GyroBias | None = None,
+    ) -> None:
         """Begin at the oldest sample there is; ``base`` is another track's checkpoint there."""
         start = store.start
-        self.tracker = Tracker(settings, start, base)
+        self.tracker = Tracker(settings, start, base, known)
         self.builder = TrailBuilder(name)
         self._settled = start  # rows the builder has had
         self._segments_seen = 0
@@ -250,9 +260,11 @@ class FootTrack:
 class Track:
     """Settings and one ``FootTrack`` for each sensor."""
 
-    def __init__(self, name: str, settings: Settings) -> None:
+    def __init__(self, name: str, settings: Settings, biases: Biases = NO_BIASES) -> None:
+        """``biases`` are the gyro biases known before the walk, by sensor."""
         self.name = name
         self.settings = settings
+        self.biases = biases
         self.feet: dict[str, FootTrack] = {}
         self.smoothed_s: float | None = None  # since the first sample; None: nothing is smoothed
 
@@ -260,7 +272,8 @@ class Track:
         """Take a sensor's new samples; a sensor not seen before joins, from ``base`` if blocks are gone."""
         foot = self.feet.get(sensor)
         if foot is None:
-            foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, base)
+            known = self.biases.get(sensor)
+            foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, base, known)
         foot.advance(store)
 
     def look_back(self, stores: Mapping[str, Blocks]) -> None:
@@ -320,10 +333,11 @@ class Reestimation:
     before: Settings  # what an undo goes back to
     epoch: int = 0  # of the session when it was given out
     look_back: bool = False  # smooth it when it is there
+    biases: Biases = field(default_factory=dict)  # known before the walk
 
     def run(self) -> Track:
         """The new track over all samples that were there when the work was given out."""
-        track = Track(f"track{self.number}", self.settings)
+        track = Track(f"track{self.number}", self.settings, self.biases)
         for sensor, store in self.stores.items():
             track.advance(sensor, store, self.bases.get(sensor))
         if self.look_back:

@@ -37,7 +37,10 @@ EDGES = {"sources", "outputs", "scene", "door", "home", "compiled", "compressed"
 EDGES |= {"opinions", "launch"}
 SHELL = {"shell", "commands", "__main__", "__init__"}
 #: Files of shell/ that others of it wire in.
-WIRED = {"run": {"annexe", "aside", "before", "hand_in", "librarian"}, "librarian": {"aside", "shelf"}}
+WIRED = {
+    "run": {"annexe", "aside", "before", "hand_in", "librarian", "remembering"},
+    "librarian": {"aside", "shelf"},
+}
 CLOCKS_AND_FILES = {"asyncio", "concurrent", "glob", "http", "multiprocessing", "os", "pathlib", "selectors"}
 CLOCKS_AND_FILES |= {"shutil", "socket", "ssl", "subprocess", "tempfile", "threading", "time", "urllib"}
 ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources", "zstandard": "compressed"}

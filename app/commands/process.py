@@ -20,6 +20,11 @@ def add(commands: Commands) -> None:
     process.add_argument("recording", metavar="RECORDING|FOLDER")
     add_settings(process)
     process.add_argument("--out", metavar="DIR", type=Path, help="write trajectory and strides there")
+    process.add_argument(
+        "--bias-from",
+        metavar="RECORDING",
+        help="begin with the gyro bias told by this one, of the same sensor",
+    )
     add_json(process)
     add_workers(process)
 
@@ -32,7 +37,7 @@ def run(options: argparse.Namespace) -> int:
     spec = parse_spec(options.recording)
     if spec.kind == "replay" and Path(spec.target).expanduser().is_dir():
         return run_folder(options, spec)
-    done = batch.process(options.recording, settings_of(options))
+    done = batch.process(options.recording, settings_of(options), options.bias_from)
     files = batch.write(done, options.out) if options.out else []
     if options.json:
         print(json.dumps(batch.summary(done)))

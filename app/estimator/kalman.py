@@ -44,7 +44,9 @@ from app.motion import Vector
 from app.rotation import exponential, from_yaw, multiply, normalise, rotate, yaw_of
 
 #: Noise of the specific force and of the rate, as they are integrated: (m/s)/√s and rad/√s.
-FORCE_NOISE, RATE_NOISE = 0.05, 0.002
+FORCE_NOISE, RATE_NOISE = 0.05, 5e-4
+#: … and of a rate that is large: what scale and alignment leave wrong grows with it (a share of it, √s).
+RATE_SHARE = 2e-4
 #: What happens between two samples is not seen: σ of a velocity as a share of the force's jump times Δt.
 JUMP_NOISE = 0.2
 #: How the biases wander: (m/s²)/√s and (rad/s)/√s.
@@ -202,7 +204,8 @@ def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, d
     jump2 = (state.f0 - force_before_b[0]) ** 2 + (state.f1 - force_before_b[1]) ** 2
     jump2 += (state.f2 - force_before_b[2]) ** 2
     add_variance(state.P, VELOCITY_AT, FORCE_NOISE**2 * dt_s + jump2 * (JUMP_NOISE * dt_s) ** 2)
-    add_variance(state.P, ATTITUDE_AT, RATE_NOISE**2 * dt_s)
+    rate2 = state.w0 * state.w0 + state.w1 * state.w1 + state.w2 * state.w2
+    add_variance(state.P, ATTITUDE_AT, (RATE_NOISE**2 + rate2 * RATE_SHARE**2) * dt_s)
     add_variance(state.P, GYRO_AT, RATE_WANDER**2 * dt_s)
     add_variance(state.P, FORCE_AT, FORCE_WANDER**2 * dt_s)
 

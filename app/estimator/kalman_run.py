@@ -13,7 +13,7 @@ from app.estimator.corrections import Event
 from app.estimator.gait import STANCE, SWING
 from app.estimator.kalman import step
 from app.estimator.kalman_state import RING, RING_P, RING_Q, KalmanState
-from app.estimator.papers import Reading
+from app.estimator.papers import reading_at
 from app.estimator.state import Record
 from app.motion import Floats, Quaternion
 from app.rotation import exponential, multiply, normalise
@@ -37,12 +37,7 @@ def run(
     for i in range(begin, end):
         if count == events.shape[0]:
             return i, count
-        reading = Reading(
-            samples[i, 0],
-            (samples[i, 1], samples[i, 2], samples[i, 3]),
-            (samples[i, 4], samples[i, 5], samples[i, 6]),
-            (samples[i, 7], samples[i, 8], samples[i, 9]),
-        )
+        reading = reading_at(samples, i)
         happened = step(now, reading)
         rows[i, 0], rows[i, 1], rows[i, 2] = now.px, now.py, now.pz
         rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz

@@ -12,7 +12,7 @@ from enum import IntEnum
 import numpy as np
 
 from app.estimator.state import Record, dtype_of
-from app.motion import Floats
+from app.motion import Floats, GyroBias
 from app.settings import Settings
 
 #: Samples that the trailing windows may hold: 50 ms at 2560 Hz.
@@ -24,6 +24,8 @@ RING_WIDTH = 16
 #: The gait's recent past is kept in bins of 50 ms: |ω|² summed, samples, least statistic.
 BINS = 32
 BIN_NS = 50_000_000
+#: σ by which a gyro's bias differs from what it was when the sensor was last switched on, rad/s.
+TURN_ON_RADPS = 1e-3
 #: Parts of the error state.
 PARTS = 15
 VELOCITY_AT, ATTITUDE_AT, GYRO_AT, FORCE_AT = 3, 6, 9, 12
@@ -167,6 +169,8 @@ class KalmanState(Parameters, Window):
     force_bias: Floats  # [3], m/s²
     bias_info: Floats  # [3]: 1 / σ² of what still windows say of the gyro bias …
     bias_sum: Floats  # [3]: … and that times the bias
+    known_bias: Floats  # [3], rad/s: what was remembered of this sensor …
+    known_info: Floats  # [3]: … and 1 / σ² of it (0: nothing was)
     ring: Floats  # [RING, RING_WIDTH]
     bins: Floats  # [BINS, 3]
     fifth: Floats  # [3]: sums of the rate in the fifth under way, and of its squares
@@ -188,6 +192,8 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "force_bias": (3,),
     "bias_info": (3,),
     "bias_sum": (3,),
+    "known_bias": (3,),
+    "known_info": (3,),
     "ring": (RING, RING_WIDTH),
     "bins": (BINS, 3),
     "fifth": (3,),
@@ -211,13 +217,16 @@ _VECTORS = (
 )  # fmt: skip
 
 
-def new_state(settings: Settings) -> Record:
-    """The state before the first sample: a record array of one."""
+def new_state(settings: Settings, known: GyroBias | None = None) -> Record:
+    """The state before the first sample: a record array of one. ``known`` is a gyro bias from before."""
     state = np.zeros(1, KALMAN)
     state["q0"] = 1.0
     state["contact_row"] = -1.0
     state["heading"] = settings.start_heading_rad
     set_parameters(state, settings)
+    if known is not None and settings.remembered_bias:
+        state["known_bias"] = known.rate_b
+        state["known_info"] = 1.0 / (np.square(known.doubt_radps) + TURN_ON_RADPS**2)
     return state
 
 

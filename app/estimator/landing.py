@@ -16,7 +16,7 @@ def landed(settings: Settings, saved: Saved) -> Tracker | None:
 
     The rows before it are not known and say where the foot stands there; strides are counted, not told.
     """
-    kind = METHODS[settings.estimator].new_state(settings).dtype
+    kind = METHODS[settings.estimator].begin(settings, None).dtype
     if saved.settings != settings or len(saved.state) != kind.itemsize or len(saved.newest) != ROW_WIDTH:
         return None
     state = np.frombuffer(saved.state, kind).copy()

@@ -10,7 +10,7 @@ from app.estimator import corrections, kalman_run, kalman_state, papers_run, res
 from app.estimator.gait import SWING
 from app.estimator.state import Record
 from app.estimator.trust import trust_of
-from app.motion import Floats, Trust
+from app.motion import Floats, GyroBias, Trust
 from app.rotation import yaw_of
 from app.settings import Settings
 
@@ -22,13 +22,17 @@ def _unknown(_: Record, __: float) -> Trust | None:
 class Method(NamedTuple):
     """One estimator. States differ, rows and events are the same."""
 
-    new_state: Callable[[Settings], Record]
+    begin: Callable[[Settings, GyroBias | None], Record]  # before the first sample; a bias from before
     resume: Callable[[Record, Settings], None]  # from a checkpoint, under other settings
     run: Callable[[Record, Floats, Floats, int, int, Floats], tuple[int, int]]
     correct: Callable[[Floats, int, Floats, Floats, Record], None]
     moves: Callable[[Record], bool]  # whether rows since the lift may still change
     trust: Callable[[Record, float], Trust | None]  # how sure it is, after so many metres
     events: int  # that a run may report before it pauses for them to be applied
+
+
+def _papers_begin(settings: Settings, _: GyroBias | None) -> Record:
+    return state.new_state(settings)
 
 
 def _papers_correct(rows: Floats, first_row: int, samples: Floats, event: Floats, _: Record) -> None:
@@ -45,9 +49,8 @@ def _kalman_moves(record: Record) -> bool:
 
 METHODS: dict[str, Method] = {
     "papers": Method(
-        state.new_state, resume.resume, papers_run.run, _papers_correct, _papers_moves, _unknown, events=64
+        _papers_begin, resume.resume, papers_run.run, _papers_correct, _papers_moves, _unknown, events=64
     ),
-    # its corrections read the state as the event left it: one event a run
     "kalman": Method(  # its corrections read the state as the event left it: one event a run
         kalman_state.new_state,
         kalman_state.resume,
@@ -65,7 +68,7 @@ def go_on(method: Method, record: Record, settings: Settings) -> Record:
 
     Another method's walk is taken up as after a gap: from where the foot was, level sought anew.
     """
-    own = method.new_state(settings)
+    own = method.begin(settings, None)
     if record.dtype == own.dtype:
         own = record.copy()
         method.resume(own, settings)

@@ -18,7 +18,7 @@ from app.estimator.gait import STANCE, SWING, gait_phase
 from app.estimator.rest import begin_rest, rest
 from app.estimator.state import Nav, State
 from app.estimator.strapdown import bias_of_swing, motion_acceleration, trapezoid, without_bias
-from app.motion import Quaternion, Vector
+from app.motion import Floats, Quaternion, Vector
 from app.rotation import from_yaw, multiply, yaw_of
 
 
@@ -29,6 +29,17 @@ class Reading(NamedTuple):
     force_b: Vector  # m/s²
     rate_b: Vector  # rad/s
     field_b: Vector  # NaN: no magnetometer
+
+
+@kernel
+def reading_at(samples: Floats, i: int) -> Reading:
+    """Row ``i`` of a sample table [n, 10]."""
+    return Reading(
+        samples[i, 0],
+        (samples[i, 1], samples[i, 2], samples[i, 3]),
+        (samples[i, 4], samples[i, 5], samples[i, 6]),
+        (samples[i, 7], samples[i, 8], samples[i, 9]),
+    )
 
 
 class Aiding(NamedTuple):

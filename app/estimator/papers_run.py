@@ -5,7 +5,7 @@ from __future__ import annotations
 from app.compiled import kernel
 from app.estimator import state as s
 from app.estimator.corrections import correct
-from app.estimator.papers import Reading, step
+from app.estimator.papers import reading_at, step
 from app.estimator.state import Record, State
 from app.estimator.strapdown import bias_of_swing
 from app.motion import Floats
@@ -24,12 +24,7 @@ def run(
     for i in range(begin, end):
         if count == events.shape[0]:
             return i, count
-        reading = Reading(
-            samples[i, 0],
-            (samples[i, 1], samples[i, 2], samples[i, 3]),
-            (samples[i, 4], samples[i, 5], samples[i, 6]),
-            (samples[i, 7], samples[i, 8], samples[i, 9]),
-        )
+        reading = reading_at(samples, i)
         happened = step(now, reading)
         # A swing's rows are what is known now; its zero-velocity update corrects them.
         rows[i, 0], rows[i, 1], rows[i, 2] = now.px + now.sx, now.py + now.sy, now.pz + now.sz

@@ -18,7 +18,7 @@ from app.estimator.corrections import EVENT_WIDTH
 from app.estimator.kalman import step
 from app.estimator.kalman_run import AS_RATE, turn_row, write_event
 from app.estimator.kalman_state import PARTS, KalmanState
-from app.estimator.papers import Reading
+from app.estimator.papers import reading_at
 from app.estimator.state import Record
 from app.estimator.tracker import Tracker
 from app.motion import Column, Floats, RowColumn
@@ -51,12 +51,7 @@ def forward(
     now = state[0]
     count = 0
     for i in range(samples.shape[0]):
-        reading = Reading(
-            samples[i, 0],
-            (samples[i, 1], samples[i, 2], samples[i, 3]),
-            (samples[i, 4], samples[i, 5], samples[i, 6]),
-            (samples[i, 7], samples[i, 8], samples[i, 9]),
-        )
+        reading = reading_at(samples, i)
         now.learnt = 0.0
         now.told, now.told_energy, now.told_least = 1.0, gait[i, 0], gait[i, 1]
         happened = step(now, reading)

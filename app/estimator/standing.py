@@ -43,9 +43,10 @@ def begin_window(state: KalmanState) -> None:
 
 @kernel
 def begin_bias(state: KalmanState) -> None:
-    """What is known of the gyro bias before any window: it is about zero."""
+    """What is known of the gyro bias before any window: it is about zero, or what was remembered."""
     for k in range(3):
-        state.bias_info[k], state.bias_sum[k] = 1.0 / PRIOR_RADPS**2, 0.0
+        state.bias_info[k] = 1.0 / PRIOR_RADPS**2 + state.known_info[k]
+        state.bias_sum[k] = state.known_info[k] * state.known_bias[k]
 
 
 @kernel

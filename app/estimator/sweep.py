@@ -16,7 +16,7 @@ from app.compiled import kernel
 from app.estimator import state as s
 from app.estimator.attitude import share_of
 from app.estimator.gait import STANCE
-from app.estimator.papers import Reading, aid, leave_segment, level, navigate, observe
+from app.estimator.papers import aid, leave_segment, level, navigate, observe, reading_at
 from app.estimator.resume import resume
 from app.estimator.state import NAV, Record
 from app.estimator.tracker import Checkpoint
@@ -39,12 +39,7 @@ def sweep_run(
     now = state[0]
     columns = gains_swing.shape[0]
     for i in range(samples.shape[0]):
-        reading = Reading(
-            samples[i, 0],
-            (samples[i, 1], samples[i, 2], samples[i, 3]),
-            (samples[i, 4], samples[i, 5], samples[i, 6]),
-            (samples[i, 7], samples[i, 8], samples[i, 9]),
-        )
+        reading = reading_at(samples, i)
         force_before, rate_before = (now.fx, now.fy, now.fz), (now.wx, now.wy, now.wz)
         happened, dt_s = observe(now, reading)
         if happened & s.SEGMENT:

@@ -12,7 +12,7 @@ from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
 from app.estimator.strides import Contact, lift_above_line, stride_to, turned
-from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples, Stride, Trust
+from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, GyroBias, Samples, Stride, Trust
 from app.rotation import yaw_of
 from app.settings import Settings
 
@@ -33,11 +33,20 @@ class Tracker:
     ``settled_end``.
     """
 
-    def __init__(self, settings: Settings, start: int = 0, base: Checkpoint | None = None) -> None:
-        """Begin at row ``start`` (a multiple of ``BLOCK``), from another tracker's checkpoint there."""
+    def __init__(
+        self,
+        settings: Settings,
+        start: int = 0,
+        base: Checkpoint | None = None,
+        known: GyroBias | None = None,
+    ) -> None:
+        """Begin at row ``start`` (a multiple of ``BLOCK``), from another tracker's checkpoint there.
+
+        ``known`` is the sensor's gyro bias from before, for the first row.
+        """
         self.settings = settings
         self.method = METHODS[settings.estimator]
-        self._base = base or Checkpoint(self.method.new_state(settings), 0, 0.0, None)
+        self._base = base or Checkpoint(self.method.begin(settings, known), 0, 0.0, None)
         contact = self._base.contact
         turn_rad = settings.start_heading_rad - float(self._base.state["north_rad"][0])
         self._contact = contact and turned(contact, turn_rad)  # the last footprint of this segment
@@ -157,8 +166,8 @@ def store(samples: Samples) -> Blocks:
     return table
 
 
-def track(samples: Samples, settings: Settings) -> Tracker:
+def track(samples: Samples, settings: Settings, known: GyroBias | None = None) -> Tracker:
     """A whole recording of one sensor: the same steps as live, in one go."""
-    tracker = Tracker(settings)
+    tracker = Tracker(settings, known=known)
     tracker.advance(store(samples))
     return tracker

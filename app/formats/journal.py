@@ -7,9 +7,11 @@ from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any, NamedTuple, get_args
 
-from app.motion import Order, ReplaceCandidate, SessionCommand, SetCandidate
+from app.motion import KnowBias, Order, ReplaceCandidate, SessionCommand, SetCandidate, Vector
 from app.settings import Settings
 
+#: No gyro is so far off.
+MOST_BIAS_RADPS = 1.0
 _COMMANDS: dict[str, type[Any]] = {kind.__name__: kind for kind in get_args(SessionCommand)}
 
 
@@ -90,10 +92,32 @@ def _command(kind: type[Any], values: dict[str, Any]) -> Any:
     if kind is ReplaceCandidate:
         settings, reason = _settings(values["settings"]), values["reason"]
         return ReplaceCandidate(settings, reason) if settings and isinstance(reason, str) else None
+    if kind is KnowBias:
+        return _bias(values)
     expected = {"bool": bool, "str": str}
     if any(type(values[part.name]) is not expected.get(str(part.type)) for part in fields(kind)):
         return None
     return kind(**values)
+
+
+def _bias(values: dict[str, Any]) -> KnowBias | None:
+    rate, doubt = _vector(values["rate_b"]), _vector(values["doubt_radps"])
+    sensor, source = values["sensor"], values["source"]
+    if rate is None or doubt is None or min(doubt) <= 0.0:
+        return None
+    if not isinstance(sensor, str) or not isinstance(source, str):
+        return None
+    return KnowBias(sensor, rate, doubt, source)
+
+
+def _vector(value: object) -> Vector | None:
+    """Three finite numbers, each a rate that a gyro's bias may be."""
+    if not isinstance(value, list) or len(value) != 3:
+        return None
+    if any(type(part) not in (int, float) or not abs(part) < MOST_BIAS_RADPS for part in value):
+        return None
+    x, y, z = (float(part) for part in value)
+    return (x, y, z)
 
 
 def _changes(value: object) -> tuple[tuple[str, float | bool | str], ...] | None:

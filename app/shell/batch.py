@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Mapping
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from app.estimator.bias import learnt
 from app.estimator.smoother import finish
 from app.estimator.tracker import Tracker, store, track
 from app.gestures.default import DefaultDecoder
 from app.gestures.merge import changes, decode
 from app.gestures.papers import PapersDecoder
 from app.gestures.words import Decision
-from app.motion import ATTITUDE, Floats, InputError, Recording, Role, Samples
+from app.motion import ATTITUDE, Floats, GyroBias, InputError, Recording, Role, Samples
 from app.outputs import tables
 from app.settings import Settings
 from app.sources.files import load, printable
@@ -36,13 +37,38 @@ class Processed(NamedTuple):
     estimator_s: float
 
 
-def process(spec: str, settings: Settings) -> Processed:
-    """Read and estimate a whole recording: the same compiled steps as live."""
+def process(spec: str, settings: Settings, bias_from: str | None = None) -> Processed:
+    """Read and estimate a whole recording: the same compiled steps as live.
+
+    ``bias_from`` is another recording of the same sensors, whose gyro biases this one begins with.
+    """
     recording, _ = open_recording(parse_spec(spec))
-    return estimate(recording, settings)
+    biases = biases_of(bias_from, recording, settings) if bias_from else {}
+    return estimate(recording, settings, biases)
 
 
-def estimate(recording: Recording, settings: Settings) -> Processed:
+def biases_of(spec: str, wanted: Recording, settings: Settings) -> dict[str, GyroBias]:
+    """The gyro biases that a recording tells, for the sensors of ``wanted``."""
+    recording, _ = open_recording(parse_spec(spec))
+    told = {}
+    for samples in recording.sensors:
+        name = samples.sensor
+        serials = [source.serials.get(name) for source in (recording, wanted)]
+        if None not in serials and serials[0] != serials[1]:
+            raise InputError(f"{spec}: sensor {serials[0]}, expected {serials[1]}, the one of {wanted.name}")
+        bias = learnt(track(samples, replace(settings, estimator="kalman")))
+        if bias is not None:
+            told[name] = bias
+    if not set(told) & {samples.sensor for samples in wanted.sensors}:
+        raise InputError(
+            f"{spec}: tells no gyro bias of {wanted.name}: expected the same sensor, at rest for a second"
+        )
+    return told
+
+
+def estimate(
+    recording: Recording, settings: Settings, biases: Mapping[str, GyroBias] | None = None
+) -> Processed:
     """Estimate a whole recording that has been read."""
     warm_up(settings.estimator)  # so that the seconds told are the estimator's, not the compiler's
     if settings.hindsight:
@@ -51,7 +77,7 @@ def estimate(recording: Recording, settings: Settings) -> Processed:
     trackers = {}
     for sensor in recording.sensors:
         samples = store(sensor)
-        tracker = Tracker(settings)
+        tracker = Tracker(settings, known=(biases or {}).get(sensor.sensor))
         began = time.perf_counter()
         tracker.advance(samples)
         finish(tracker, samples)

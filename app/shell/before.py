@@ -71,6 +71,11 @@ class Before:
         busy = self._guide is not None or self._preflight is not None
         return busy or any(used is not None for used in self._used.values()) or self._any_kept()
 
+    def calibrated(self, sensor: str) -> str:
+        """When the calibration was made that corrects a sensor; empty: none does."""
+        used = self._used.get(sensor)
+        return "" if used is None else used.made
+
     def _any_kept(self) -> bool:
         return any(self._corrections.find(sensor) for sensor in self._info().sensors)
 

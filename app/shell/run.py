@@ -43,6 +43,7 @@ from app.shell.aside import aside
 from app.shell.before import Before
 from app.shell.hand_in import Seen, hand_in
 from app.shell.librarian import Librarian
+from app.shell.remembering import Remembering
 from app.simulate import lab as lessons
 from app.sources.glanced import Glanced, glanced
 from app.sources.opening import open_source
@@ -119,7 +120,7 @@ class Viewer:
         self._fresh = asyncio.Event()  # there is something that no frame has shown
         # two for a search, one so that a slider never waits for it
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
-        self._before = Before(lambda: self._source.info, self._mark_preflight)
+        self._prepare_source()
         self._seen: m.Snapshot | None = None  # the newest that was drawn
         self._shown: m.Status | None = None  # with it
         self._frames = 0
@@ -128,6 +129,11 @@ class Viewer:
         self._last_sample_s = time.monotonic()
         self._sweeping: asyncio.Task[None] | None = None
         self._give_up = False
+
+    def _prepare_source(self) -> None:
+        """What stands between a source and the session."""
+        self._before = Before(lambda: self._source.info, self._mark_preflight)
+        self._remembering = Remembering(lambda: self._source.info, lambda name: self._before.calibrated(name))
 
     async def serve(self, tell: Callable[[str], None]) -> None:
         """Open the page, then everything else."""
@@ -140,6 +146,7 @@ class Viewer:
 
         with contextlib.ExitStack() as closing:
             closing.callback(self._workers.shutdown, wait=False, cancel_futures=True)
+            closing.callback(lambda: self._remembering.keep(self._session))
             closing.callback(self._record, False)
             closing.callback(lambda: self._source.close())
             if self._options.record is not None:
@@ -210,10 +217,11 @@ class Viewer:
     def _begin(self, spec: str, source: Source) -> None:
         """Another source is another walk, on the same page."""
         self._record(False)
+        self._remembering.keep(self._session)
         self._source.close()
         self._source, before = source, self._session
         self._options = replace(self._options, source=spec)
-        self._before = Before(lambda: self._source.info, self._mark_preflight)
+        self._prepare_source()
         self._session = self._new_session(source.settings or before.main.settings, before.epoch + 1)
         self._status = replace(self._status, sweep=None, sweep_progress=None, lesson="")
         self._last_sample_s = time.monotonic()
@@ -227,8 +235,7 @@ class Viewer:
             if isinstance(item, m.RestartHere):
                 self._take_order(m.Order(item, "replay", time.monotonic_ns()))
                 if self._recorder is not None:
-                    self._recorder.start(self._start())
-                    self._saver.begin(self._session)
+                    self._start_in(self._recorder)
             elif isinstance(item, m.Order):
                 self._take_order(item)
             elif isinstance(item, m.Stretch):
@@ -240,6 +247,8 @@ class Viewer:
 
     def _take_sample(self, sample: m.Sample) -> None:
         sample = self._before.sample(sample)
+        if (known := self._remembering.order(sample.sensor)) is not None:
+            self._apply(known)
         self._session.take(sample)
         if self._recorder is not None:
             self._recorder.sample(sample)
@@ -364,8 +373,14 @@ class Viewer:
             self._recorder = Recorder(
                 folder, options.profile, options.source, self._source.info, made_by, key=key()
             )
-            self._recorder.start(self._start())
-            self._saver.begin(self._session)
+            self._start_in(self._recorder)
+
+    def _start_in(self, recorder: Recorder) -> None:
+        """What a walk that is recorded from here begins with."""
+        recorder.start(self._start())
+        for order in self._remembering.told:
+            recorder.order(self._session.number, order)
+        self._saver.begin(self._session)
 
     def _start(self) -> Start:
         """What the session holds now, for a walk that is recorded from here."""

@@ -24,6 +24,7 @@ COMMANDS = [
     m.ResetHeading(),
     m.RestartHere(),
     m.LookBack(),
+    m.KnowBias("left", (0.1 + 0.2, -0.004, 0.0), (3e-4, 1e-3, 0.5), "2026-11-20"),
 ]
 
 
@@ -48,6 +49,7 @@ anything = st.recursive(
     max_leaves=8,
 )
 KEYS = ("number", "who", "host_ns", "changes", "settings", "reason", "on", "slot")
+KEYS += ("sensor", "rate_b", "doubt_radps", "source")
 
 
 @given(
