@@ -38,6 +38,8 @@ SETTLED = """() => {
   return finished("/world/town") && finished("/world/sky") && drawn.frame > 4 &&
     document.querySelector(".mover.mv-ready") !== null;
 }"""
+#: What is going on, in words.
+SAYS = "(words) => document.querySelector('.mv-reason').textContent === words"
 
 
 class House:
@@ -75,7 +77,7 @@ class House:
         page = self.browser.new_page(viewport={"width": size[0], "height": size[1]})
         page.goto(f"{self.door.address}/?fixedDpr=1&{query}")
         page.wait_for_function(SETTLED, timeout=PATIENCE_MS)
-        page.wait_for_timeout(2500)
+        page.wait_for_function(SAYS, arg=self.visit.reason, timeout=PATIENCE_MS)
         return page
 
     def close(self) -> None:
@@ -99,14 +101,23 @@ def pixels(page: Page) -> np.ndarray:
     )
 
 
+def at_rest(page: Page) -> np.ndarray:
+    """The page once nothing on it moves any more: no sign is still to come, no bar to glide."""
+    before, now = pixels(page), pixels(page)
+    while (before != now).any():
+        page.wait_for_timeout(300)
+        before, now = now, pixels(page)
+    return now
+
+
 def test_three_tiles_are_one_wide_window(house: House, build_dir: Path) -> None:
     tiles = []
     for name in ("left", "centre", "right"):
         page = house.open(f"tile={name}", TILE)
-        tiles.append(pixels(page))
+        tiles.append(at_rest(page))
         page.close()
     wide_page = house.open("kiosk=1", (3 * TILE[0], TILE[1]))
-    wide = pixels(wide_page)
+    wide = at_rest(wide_page)
     wide_page.screenshot(path=build_dir / "mover_wall.png", timeout=PATIENCE_MS)
     wide_page.close()
     stitched = np.concatenate(tiles, axis=1)
@@ -116,13 +127,13 @@ def test_three_tiles_are_one_wide_window(house: House, build_dir: Path) -> None:
 
 def test_a_kiosk_shows_no_panel_and_the_operator_has_one(house: House, build_dir: Path) -> None:
     kiosk = house.open("kiosk=1", (800, 450))
+    kiosk.get_by_text("both feet march").first.wait_for(timeout=PATIENCE_MS)
     assert not kiosk.get_by_text("Next visitor").first.is_visible()
-    assert kiosk.get_by_text("both feet march").first.is_visible()
     kiosk.screenshot(path=build_dir / "mover_kiosk.png", timeout=PATIENCE_MS)
     kiosk.close()
     operator = house.open("", (1280, 760))
-    assert operator.get_by_text("Next visitor").first.is_visible()
-    assert operator.get_by_text("yaw since the action began").first.is_visible()
+    for said in ("Next visitor", "yaw since the action began"):
+        operator.get_by_text(said).first.wait_for(timeout=PATIENCE_MS)
     house.orders.clear()
     operator.keyboard.down("ArrowUp")
     operator.keyboard.down("ArrowRight")
@@ -153,8 +164,6 @@ def test_a_tile_that_lost_its_connection_comes_back(house: House) -> None:
     house.door = house.open_door(port)
     said = "it has come back"
     before, house.visit = house.visit, replace(house.visit, reason=said)
-    page.wait_for_function(
-        "(s) => document.querySelector('.mv-reason').textContent === s", arg=said, timeout=PATIENCE_MS
-    )
+    page.wait_for_function(SAYS, arg=said, timeout=PATIENCE_MS)
     house.visit = before
     page.close()
