@@ -48,8 +48,10 @@ anything = st.recursive(
     lambda inner: st.lists(inner, max_size=3) | st.dictionaries(st.text(max_size=5), inner, max_size=3),
     max_leaves=8,
 )
-KEYS = ("number", "who", "host_ns", "changes", "settings", "reason", "on", "slot")
-KEYS += ("sensor", "rate_b", "doubt_radps", "source")
+KEYS = (
+    *("number", "who", "host_ns", "changes", "settings", "reason", "on", "slot"),
+    *("sensor", "rate_b", "doubt_radps", "source"),
+)
 
 
 @given(

@@ -50,6 +50,6 @@ doubts = st.floats(1e-9, 0.9)
 
 
 @given(st.text(), st.tuples(numbers, numbers, numbers), st.tuples(doubts, doubts, doubts), st.text())
-def test_any_bias_comes_back(sensor: str, rate: tuple, doubt: tuple, made: str) -> None:  # type: ignore[type-arg]
+def test_any_bias_comes_back(sensor: str, rate: tuple, doubt: tuple, made: str) -> None:
     found = Remembered(sensor, GyroBias(rate, doubt), made)
     assert biases.from_json(biases.to_json(found)) == found
