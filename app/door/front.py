@@ -67,9 +67,14 @@ class Door:
         """What an operator opens in a browser; with ``?token=…`` where there is one: never log it."""
         return self._address(self.access.operator)
 
+    @property
+    def watching(self) -> str:
+        """The same for who only watches; an operator's where there is no token for viewers."""
+        return self._address(self.access.viewer or self.access.operator)
+
     def greeting(self) -> list[str]:
         """What to print once it is open, and nowhere else: the addresses with their tokens."""
-        watch = self._address(self.access.viewer) if self.access.viewer else None
+        watch = self.watching if self.access.viewer else None
         lines = greeting(self.address, watch, reachable=not is_loopback(self.access.host))
         if self.access.certificate:
             lines.append(f"Its certificate, SHA-256: {tls.fingerprint(self.access.certificate)}")

@@ -106,17 +106,24 @@ def open_feeds(options: Options) -> list[Feed]:
     return [Feed(open_source(options.source or DEFAULT_SOURCE, changes=False), None)]
 
 
-def addresses(address: str, options: Options) -> list[str]:
-    """What else can be opened: full windows, a wall's tiles, the operator's page."""
-    joined = address + ("&" if "?" in address else "/?")
-    lines = [f"  without the panel   {joined}kiosk=1"]
+def addresses(operate: str, watch: str, options: Options) -> list[str]:
+    """What else can be opened: full windows, a wall's tiles, the operator's page.
+
+    ``operate`` and ``watch`` are the addresses for either; what hangs on a wall shows and moves nothing.
+    """
+    lines = [f"  without the panel   {asking(watch)}kiosk=1"]
     if options.kiosk:
-        lines = [f"  operator's page     {joined}operator=1"]
+        lines = [f"  operator's page     {asking(operate)}operator=1"]
     if options.wall is not None:
         columns, rows = options.wall
         names = TILES.get(options.wall) or [f"{c},{r}" for r in range(rows) for c in range(columns)]
-        lines += [f"  wall, {name:<13} {joined}tile={name}&fixedDpr=1" for name in names]
+        lines += [f"  wall, {name:<13} {asking(watch)}tile={name}&fixedDpr=1" for name in names]
     return lines
+
+
+def asking(address: str) -> str:
+    """An address to which ``key=value`` can be joined."""
+    return address + ("&" if "?" in address else "/?")
 
 
 async def prepared(work: Callable[[], None]) -> None:
@@ -173,7 +180,7 @@ class Mover:
         )  # fmt: skip
         self._closing.callback(door.stop)
         door.start()
-        for line in [*door.greeting(), *addresses(door.address, self._options)]:
+        for line in [*door.greeting(), *addresses(door.address, door.watching, self._options)]:
             tell(line)
         if self._options.open_browser:
             open_in_browser(door.address)

@@ -17,8 +17,10 @@ from playwright.sync_api import Browser
 from pythonosc.osc_message import OscMessage
 
 from app.commands.mover import wall_of
+from app.door.access import Access
 from app.gestures.packet import decode
 from app.motion import InputError, MotionId
+from app.shell.mover import Options, addresses
 from tests.refusals import refused
 from tests.scene.pages import PATIENCE_MS
 
@@ -116,3 +118,14 @@ def test_a_wall_is_columns_by_rows(text: str) -> None:
     assert wall_of("3x1") == (3, 1)
     with pytest.raises(InputError, match="--wall"):
         wall_of(text)
+
+
+def test_what_hangs_on_a_wall_moves_nothing() -> None:
+    access = Access("0.0.0.0", 1, "to-operate", "to-watch")
+    options = Options(None, None, None, "default", None, None, access, False, True, (3, 1))
+    operator, *tiles = addresses("http://h:1/?token=to-operate", "http://h:1/?token=to-watch", options)
+    assert operator.endswith("http://h:1/?token=to-operate&operator=1")
+    assert [tile.partition("tile=")[2] for tile in tiles] == [
+        f"{name}&fixedDpr=1" for name in ("left", "centre", "right")
+    ]
+    assert all("to-operate" not in tile for tile in tiles)
