@@ -558,6 +558,13 @@ class Rename:
 
 
 @dataclass(frozen=True)
+class SetDeclination:
+    """How far magnetic north lies east of true north, for the GPS track beside the walk."""
+
+    degrees: float
+
+
+@dataclass(frozen=True)
 class Calibrate:
     """The guided calibration: ``start``, ``back``, ``save``, ``undo``, ``redo`` or ``cancel``."""
 
@@ -589,6 +596,7 @@ Command = (
     | Play
     | Share
     | Rename
+    | SetDeclination
     | Calibrate
     | CheckFirst
     | MoverCommand
@@ -885,6 +893,7 @@ class Reference(NamedTuple):
     name: str
     segments: NDArray[np.float32]  # [k, 2, 2] metres, magnetic north and east of its start
     length_m: float
+    declination_rad: float = 0.0  # that its true north was turned by
 
 
 @dataclass(frozen=True)

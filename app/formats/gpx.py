@@ -38,6 +38,19 @@ def reference_of(track: GpxTrack) -> Reference:
     return Reference(track.name, np.concatenate(segments).astype(np.float32), track.length_m)
 
 
+def turned(reference: Reference, declination_rad: float) -> Reference:
+    """The same track where magnetic north lies ``declination_rad`` east of true north."""
+    turn = _to_magnetic(declination_rad - reference.declination_rad)
+    segments = (reference.segments @ turn.T).astype(np.float32)
+    return reference._replace(segments=segments, declination_rad=declination_rad)
+
+
+def _to_magnetic(angle_rad: float) -> Floats:
+    """True north and east into magnetic ones."""
+    cosine, sine = math.cos(angle_rad), math.sin(angle_rad)
+    return np.array([[cosine, sine], [-sine, cosine]])
+
+
 def recognises(data: bytes) -> bool:
     """Whether the bytes begin as a GPX file does."""
     return b"<gpx" in data[:4096]
@@ -122,8 +135,7 @@ def _on_floor(
     latitude = math.radians(origin[0])
     root = math.sqrt(1.0 - _E2 * math.sin(latitude) ** 2)
     metres = np.radians([_A * (1.0 - _E2) / root**3, _A / root * math.cos(latitude)])
-    cosine, sine = math.cos(declination_rad), math.sin(declination_rad)
-    turn = np.array([[cosine, sine], [-sine, cosine]])  # true north into magnetic north
+    turn = _to_magnetic(declination_rad)
     placed = []
     for piece in pieces:
         away = np.array(piece) - origin

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from urllib.parse import quote
 
-from app.motion import Command, Play, Rename, Share, ShelfFile, Status
+from app.motion import Command, GuiRule, Play, Rename, SetDeclination, Share, ShelfFile, Status
 from app.scene import words
 from app.scene.controls import Controls
 
@@ -29,6 +30,17 @@ class Library:
         )
         controls.choice("", {"Open": self._play, "Share": self._share, "Rename": self._rename})
         controls.text("New name", self._typed, "What Rename gives the chosen recording.", longest=80)
+        self._declination = controls.slider(
+            "Declination, °",
+            GuiRule("number", -180.0, 180.0),
+            SetDeclination,
+            min=-180.0,
+            max=180.0,
+            step=0.1,
+            initial_value=0.0,
+            visible=False,
+            hint="Of the GPS track: how far magnetic north lies east of true north. It turns the track.",
+        )
         controls.gui.add_html(UPLOAD)
         self._table = controls.html()
 
@@ -40,6 +52,9 @@ class Library:
         self._controls.offer(self._list, (CHOOSE, *names))
         self._list.show(self._chosen)
         self._table.show(table(status.shelf))
+        self._declination.appear(status.reference is not None)
+        if status.reference is not None:
+            self._declination.show(round(math.degrees(status.reference.declination_rad), 3))
 
     def _choose(self, name: str) -> None:
         self._chosen = name

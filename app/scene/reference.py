@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import viser
 
@@ -54,8 +56,9 @@ def told(reference: Reference | None) -> str:
     """Its key and length as HTML; nothing without one."""
     if reference is None:
         return ""
+    turned = math.degrees(reference.declination_rad)
     length = " ".join(words.metres(reference.length_m))
     return (
         f'<div class="ss-legend"><span><i class="ss-gps"></i>GPS {words.plain(reference.name, 60)}, {length},'
-        " from the walk's start</span></div>"
+        f" declination {turned:+.1f}°</span></div>"
     )

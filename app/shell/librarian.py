@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
 import sys
 from asyncio.subprocess import DEVNULL, PIPE
@@ -12,6 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from app import motion as m
+from app.formats.gpx import turned
 from app.home.key import key
 from app.outputs.files import beside
 from app.settings import Settings
@@ -51,7 +53,7 @@ class Librarian:
             self.files = await asyncio.to_thread(self.shelf.files)
             await asyncio.sleep(LOOK_S)
 
-    def take(self, command: m.Play | m.Rename | m.Share, settings: Settings) -> None:
+    def take(self, command: m.Play | m.Rename | m.Share | m.SetDeclination, settings: Settings) -> None:
         """Begin what is asked for; what becomes of it is said. ``settings`` are the main track's."""
         match command:
             case m.Play(name):
@@ -61,6 +63,10 @@ class Librarian:
                 self._send(self._rename(name, to))
             case m.Share(name):
                 self._send(self._share(name, settings))
+            case m.SetDeclination(degrees):
+                self._declination_deg = degrees
+                if self.reference is not None:
+                    self.reference = turned(self.reference, math.radians(degrees))
 
     def _send(self, errand: Coroutine[Any, Any, None]) -> None:
         task = asyncio.create_task(self._told(errand))

@@ -325,7 +325,7 @@ class Viewer:
                     self._source.control(command)
                 case m.Record(on):
                     self._record(on)
-                case m.Play() | m.Rename() | m.Share() as command:
+                case m.Play() | m.Rename() | m.Share() | m.SetDeclination() as command:
                     self._librarian.take(command, self._session.main.settings)
                 case m.Mark(text):
                     self._mark(order.who, text)

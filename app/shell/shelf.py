@@ -91,4 +91,4 @@ def track(path: Path, declination_deg: float) -> Reference:
     """A GPX file as a track to show; ``declination_deg``: magnetic north east of true north."""
     if not abs(declination_deg) <= 180.0:
         raise InputError(f"--declination {declination_deg:g}: expected degrees east, −180 to 180")
-    return gpx.reference_of(gpx.read(path.name, read_bytes(path), math.radians(declination_deg)))
+    return gpx.turned(gpx.reference_of(gpx.read(path.name, read_bytes(path))), math.radians(declination_deg))

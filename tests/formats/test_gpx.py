@@ -39,6 +39,16 @@ def test_magnetic_north_east_of_true_north_turns_the_track_to_the_left() -> None
     )
 
 
+@given(st.floats(-3.0, 3.0), st.floats(-3.0, 3.0))
+def test_a_track_turned_afterwards_is_the_track_read_so(first: float, then: float) -> None:
+    data = written([(0.0, 0.0), (30.0, 5.0), (-8.0, 60.0)], geo.Origin(48.0, 11.0), 0.0)
+    turned = gpx.turned(gpx.turned(gpx.reference_of(gpx.read("x.gpx", data)), first), then)
+    np.testing.assert_allclose(
+        turned.segments, gpx.reference_of(gpx.read("x.gpx", data, then)).segments, atol=1e-4
+    )
+    assert turned.declination_rad == then
+
+
 def test_the_first_tracks_name_is_the_name() -> None:
     point = '<trkseg><trkpt lat="48" lon="11"/></trkseg>'
     tracks = "".join(f"<trk><name>{name}</name>{point}</trk>" for name in ("left", "right"))

@@ -71,6 +71,15 @@ def test_a_gps_track_leaves_the_walk_where_it_is(folder: Path) -> None:
     assert librarian.reference.length_m == pytest.approx(111.2, abs=0.1)
 
 
+def test_a_declination_turns_the_track_shown_and_those_to_come(folder: Path) -> None:
+    librarian, _, _ = asked(folder, m.Play("way.gpx"), m.SetDeclination(90.0))
+    assert librarian.reference is not None
+    assert librarian.reference.segments[-1, 1].tolist() == pytest.approx([0.0, -111.2], abs=0.1)
+    librarian, _, _ = asked(folder, m.SetDeclination(90.0), m.Play("way.gpx"))
+    assert librarian.reference is not None
+    assert librarian.reference.segments[-1, 1].tolist() == pytest.approx([0.0, -111.2], abs=0.1)
+
+
 @pytest.mark.parametrize("name", ["none.mcap", "broken.csv", "../walk.mcap"])
 def test_trouble_is_one_line(folder: Path, name: str) -> None:
     _, said, opened = asked(folder, m.Play(name))

@@ -17,6 +17,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page
 
+from tests.conftest import ROOT
 from tests.refusals import refused
 from tests.scene.pages import DRAWN, PATIENCE_MS, open_page, pixels
 
@@ -35,13 +36,18 @@ def environment(tmp_path: Path) -> dict[str, str]:
 class Program:
     """``stridescope`` as a process."""
 
-    def __init__(self, tmp_path: Path, *arguments: str) -> None:
+    def __init__(self, tmp_path: Path, *arguments: str, folder: Path = ROOT) -> None:
         self.port = free_port()
         command = [sys.executable, "-m", "app", "walk", "--no-open", "--port", str(self.port), *arguments]
         self.errors = tmp_path / "stderr.txt"
         with self.errors.open("w") as errors:
             self.process = subprocess.Popen(
-                command, stdout=subprocess.PIPE, stderr=errors, text=True, env=environment(tmp_path)
+                command,
+                stdout=subprocess.PIPE,
+                stderr=errors,
+                text=True,
+                env=environment(tmp_path) | {"PYTHONPATH": str(ROOT)},
+                cwd=folder,
             )
         assert self.process.stdout is not None
         self.greeting = self.process.stdout.readline()
