@@ -122,6 +122,7 @@ class Samples:
     matrix: Floats
     saturation: NDArray[np.uint16]
     dropped: Mapping[str, int] = field(default_factory=dict)  # reason in words → rows
+    device_q_nb: Floats | None = None  # [n, 4] what the sensor itself computed, NaN where it did not
 
     def __len__(self) -> int:
         return len(self.matrix)

@@ -8,6 +8,8 @@ drift, taken to have grown evenly, and what it did to the position is taken back
 from __future__ import annotations
 
 import math
+from collections import deque
+from statistics import median
 
 import numpy as np
 
@@ -17,11 +19,14 @@ from app.settings import Settings
 from app.trail import TrailBuilder
 
 _AT_ONCE = 64  # points to the trail
+#: A swing began at most so long before it is told.
+EARLY_NS = 120_000_000
+_STILL = 8  # samples that tell gravity's length
 _DOWN: Vector = (0.0, 0.0, 1.0)
 
 
 class OwnWalk:
-    """One sensor's walk by its own quaternion, from where ours knew level on."""
+    """One sensor's walk by its own quaternion, from where ours knew level on, or from where a seek landed."""
 
     def __init__(self, name: str) -> None:
         """``name`` makes the keys of its trail's pieces unique."""
@@ -30,7 +35,10 @@ class OwnWalk:
         self._points: list[Vector] = []
         self._heading_rad: float | None = None  # the start heading it is drawn by; None before level
         self._turn: Quaternion = (1.0, 0.0, 0.0, 0.0)  # from the sensor's north to ours
-        self._gravity, self._still = 0.0, 0
+        self._still: list[float] = []  # |f| of a stance, until it has begun
+        self._gravity = 0.0
+        self._early: deque[tuple[Quaternion, Vector, int]] = deque()
+        self._early_ns = 0
         self._last_ns = 0
         self._q_nb: Quaternion = (1.0, 0.0, 0.0, 0.0)
         self._position = self._velocity = self._lifted = (0.0, 0.0, 0.0)
@@ -38,35 +46,59 @@ class OwnWalk:
         self._distance_m = 0.0
 
     def take(
-        self, sample: Sample, phase: GaitPhase, levelled: bool, q_nb: Quaternion, settings: Settings
+        self,
+        sample: Sample,
+        phase: GaitPhase,
+        levelled: bool,
+        q_nb: Quaternion,
+        position_n: Vector,
+        settings: Settings,
     ) -> None:
-        """A sample with its own orientation; ``phase``, ``q_nb`` and whether it is levelled are ours."""
+        """A sample with its own orientation; phase, levelled or not, ``q_nb`` and ``position_n`` are ours."""
         own, force = sample.device_q_nb, sample.specific_force_b
         if own is None:
             return
         if self._heading_rad is None:
-            self._gravity += math.hypot(*force)
-            self._still += 1
-            if not levelled:
+            if phase is GaitPhase.SWING:  # in the middle of a walk: at the next stance
+                self._still.clear()
                 return
+            self._still.append(math.hypot(*force))
+            if not levelled or len(self._still) < _STILL:
+                return
+            self._gravity = median(self._still)
             self._heading_rad = settings.start_heading_rad
+            self._position = self._lifted = position_n
             self._turn = from_yaw(yaw_of(q_nb) - yaw_of(own))
         self._q_nb = multiply(self._turn, own)
         step_ns, self._last_ns = sample.device_ns - self._last_ns, sample.device_ns
         if step_ns > GAP_NS:
+            self._early.clear()
+            self._early_ns = 0
             self._land(0.0)
             self._tell()
             self._builder.lift_pen()
         elif phase is GaitPhase.STANCE:
             self._land(0.5 * self._swing_s)
+            self._wait(force, step_ns)
         else:
+            for q_nb, early, early_ns in self._early:
+                self._fly(rotate(q_nb, early), early_ns * 1e-9)
+            self._early.clear()
+            self._early_ns = 0
             self._fly(rotate(self._q_nb, force), step_ns * 1e-9)
         self._points.append(self._position)
         if len(self._points) >= _AT_ONCE and phase is GaitPhase.STANCE:
             self._tell()
 
+    def _wait(self, force: Vector, step_ns: int) -> None:
+        """Keep what may turn out to be a swing's beginning: a phase is told only when it has lasted."""
+        self._early.append((self._q_nb, force, step_ns))
+        self._early_ns += step_ns
+        while self._early_ns > EARLY_NS:
+            self._early_ns -= self._early.popleft()[2]
+
     def _fly(self, force_n: Vector, dt_s: float) -> None:
-        gravity = self._gravity / self._still
+        gravity = self._gravity
         before, v = self._velocity, self._velocity
         v = (v[0] + force_n[0] * dt_s, v[1] + force_n[1] * dt_s, v[2] + (force_n[2] + gravity) * dt_s)
         p, half = self._position, 0.5 * dt_s
@@ -105,6 +137,7 @@ class OwnWalk:
         turn = from_yaw(angle)
         self._turn = multiply(turn, self._turn)
         self._q_nb = multiply(turn, self._q_nb)
+        self._early = deque((multiply(turn, q_nb), force, step_ns) for q_nb, force, step_ns in self._early)
         self._position, self._velocity = rotate(turn, self._position), rotate(turn, self._velocity)
         self._lifted, self._heading_rad = rotate(turn, self._lifted), heading_rad
 

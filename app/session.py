@@ -109,7 +109,7 @@ class Session:
         own = self._own.get(name)
         if own is None:
             own = self._own[name] = OwnWalk(f"own{self.epoch}.{name}")
-        own.take(sample, foot.phase, foot.tracker.levelled, foot.q_nb, self.main.settings)
+        own.take(sample, foot.phase, foot.tracker.levelled, foot.q_nb, foot.position_n, self.main.settings)
 
     def take_stretch(self, stretch: m.Stretch) -> None:
         """Many samples of a recording: the same to the bit as one by one, at a hundredth of the cost."""

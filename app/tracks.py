@@ -193,6 +193,13 @@ class FootTrack:
         w, x, y, z = block[place, ATTITUDE].tolist()
         return (w, x, y, z)
 
+    @property
+    def position_n(self) -> Vector:
+        """Of the newest row."""
+        block, place = self.tracker.rows.block(self.tracker.rows.end - 1)
+        north, east, down = block[place, : RowColumn.DOWN + 1].tolist()
+        return (north, east, down)
+
     def settle(self) -> None:
         """Bring the trail up to the swing under way (when somebody looks, not for every sample)."""
         settled = self.tracker.settled_end

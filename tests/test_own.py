@@ -48,6 +48,7 @@ def test_a_true_orientation_gives_the_true_walk(walk: SimulatedWalk, yaw_rad: fl
     position_n, _ = walk.truth("foot", t_s)
     from_start = math.dist(own.position_n[:2], position_n[1, :2] - position_n[0, :2])
     assert from_start < 0.02 * own.distance_m
+    assert abs(own.position_n[2]) < 0.02  # a swing that is told late would sink by a hand's breadth
     assert own.distance_m == pytest.approx(12.0, rel=0.05)
     assert own.tilt_rad < math.radians(3)
     assert abs(own.heading_rad) < math.radians(5)
@@ -84,3 +85,14 @@ def test_a_restart_begins_it_anew_and_without_orientation_there_is_none(walk: Si
     assert session.snapshot().own == {}
     plain = taken(Session(Settings()), [sample._replace(device_q_nb=None) for sample in every[:500]])
     assert plain.snapshot().own == {}
+
+
+def test_behind_a_seek_it_begins_where_ours_is(walk: SimulatedWalk) -> None:
+    every = samples(walk)
+    session = taken(Session(Settings()), [sample._replace(device_q_nb=None) for sample in every[:800]])
+    for sample in every[800:]:
+        session.take(sample)
+    snapshot = session.snapshot()
+    ours, own = snapshot.main.feet[0], snapshot.own["foot"]
+    assert math.dist(own.position_n, ours.position_n) < 0.2
+    assert ours.distance_m > 2.0 * own.distance_m > 1.0

@@ -57,13 +57,18 @@ class Keeper:
         self._roles = roles
         self._sensors: dict[str, _Channels] = {}
         self._ours = {topic: self._json(topic, *words) for topic, words in _OURS.items()}
-        self._about = journal.to_json({**about, "clock_ns": clock_ns})
+        self._about = {**about, "clock_ns": clock_ns}
         self._log_ns = clock_ns
 
     def begin(self, host_ns: int) -> bytes:
         """The first bytes of the file; the first chunk will tell about the recording."""
-        self._say(RECORDING, host_ns, self._about)
+        self._say(RECORDING, host_ns, journal.to_json(self._about))
         return self.mcap.begin()
+
+    def learnt(self, host_ns: int, more: Mapping[str, object]) -> None:
+        """What became known of the source since."""
+        self._about |= more
+        self._say(RECORDING, host_ns, journal.to_json(self._about))
 
     def sample(self, sample: Sample) -> None:
         """One sample, as it was taken: unusable ones too."""

@@ -123,7 +123,7 @@ def _kept(contents: Contents) -> Kept:
     orders = ((place, journal.read_order(data)) for place, data in said(keeping.ORDERS))
     texts = ((place, journal.from_json(data).get("text")) for place, data in said(keeping.MARKERS))
     return Kept(
-        about=about[0] if about else {},
+        about={key: value for told in about for key, value in told.items()},  # what was learnt later, too
         readings=_all_readings(contents),
         starts=tuple((place, start) for place, start in starts if start is not None),
         orders=tuple((place, *order) for place, order in orders if order is not None),
@@ -262,7 +262,14 @@ def recording_of(name: str, found: Kept) -> Recording:
         dropped_rows=sum(sum(samples.dropped.values()) for samples in sensors),
         journal=_journal(found, begin, sensors, places, hosts),
         clocks=clocks,
+        serials=_serials(found),
     )
+
+
+def _serials(found: Kept) -> dict[str, str]:
+    said = found.about.get("serials")
+    pairs = said.items() if isinstance(said, dict) else ()
+    return {sensor: serial for sensor, serial in pairs if isinstance(serial, str)}
 
 
 def _last_begin(found: Kept) -> int:
@@ -282,9 +289,11 @@ def _columns(readings: Readings, rows: Ints, dropped: dict[str, int]) -> Samples
         readings.force[rows], readings.rate[rows], readings.field[rows],
     ])  # fmt: skip
     matrix[~(np.abs(matrix[:, 7:10]) < 1e6).all(axis=1), 7:10] = math.nan
+    q_nb = readings.q_nb[rows]
     return Samples(
-        readings.sensor, readings.role, int(stamps[0]), matrix, readings.saturation[rows].copy(), dropped
-    )
+        readings.sensor, readings.role, int(stamps[0]), matrix, readings.saturation[rows].copy(), dropped,
+        None if np.isnan(q_nb[:, 0]).all() else q_nb,
+    )  # fmt: skip
 
 
 def _journal(
@@ -333,7 +342,8 @@ def _journal(
 def _sentences(found: Kept) -> tuple[str, ...]:
     said = found.about.get("assumed")
     sentences = [text for text in said if isinstance(text, str)] if isinstance(said, list) else []
-    source = _text(found.about.get("source"))
+    source, device = _text(found.about.get("source")), _text(found.about.get("device"))
+    sentences += [f"read as {device}"] if device else []
     sentences += [f"recorded from {source}"] if source else []
     sentences += [] if found.closed else ["the recording was cut short: what is whole of it is shown"]
     lost = sum(_whole(event.get("samples")) for event in found.events if event.get("event") == "lost")

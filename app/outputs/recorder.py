@@ -76,7 +76,8 @@ class Recorder:
         self._began_s = time.monotonic()
         self._ended_s: float | None = None
         self._over = threading.Event()
-        about = _about(info) | {"profile": profile, "source": source, "spec": made_by or ""}
+        self._known = _about(info)
+        about = self._known | {"profile": profile, "source": source, "spec": made_by or ""}
         self._keeper = Keeper(about, info.sensors, time.time_ns() - time.monotonic_ns(), key)
         try:
             folder.mkdir(parents=True, exist_ok=True)
@@ -99,6 +100,13 @@ class Recorder:
             self._queue.append(sample)
         elif not self._over.is_set():
             self._lost += 1
+
+    def learn(self, info: SourceInfo) -> None:
+        """What the source says of itself by now: what a sensor is, is known when it has answered."""
+        about = _about(info)
+        if about != self._known:
+            self._known = about
+            self._queue.append((Keeper.learnt, (time.monotonic_ns(), about)))
 
     def order(self, number: int, order: Order) -> None:
         """An order and its number, after it was taken."""
@@ -244,7 +252,9 @@ def _about(info: SourceInfo) -> dict[str, object]:
         "name": info.name,
         "format": info.format,
         "rate_hz": info.rate_hz,
+        "device": info.format if info.duration_s is None else "",
         "assumed": list(info.assumed),
+        "serials": dict(info.serials),
         "sensors": {sensor: role.value for sensor, role in info.sensors.items()},
     }
 

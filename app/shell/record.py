@@ -34,6 +34,7 @@ def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str],
     try:
         asyncio.run(_fill(source, recorder, seconds))
     finally:
+        recorder.learn(source.info)
         source.close()
         recorder.close(CLOSE_S)
     return recorder.state

@@ -401,6 +401,7 @@ class Viewer:
         if self._recorder is None or time.monotonic() < self._posed_s + POSES_S:
             return
         self._posed_s = time.monotonic()
+        self._recorder.learn(self._source.info)
         epoch = self._session.epoch
         for foot in feet:
             self._recorder.pose(foot.sensor, foot.position_n, foot.q_nb)

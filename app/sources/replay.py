@@ -48,6 +48,9 @@ from app.sources.timeline import Timeline
 
 _BURST_NS = 5_000_000  # between wake-ups, and between chances for the rest of the loop
 _CHUNK = 256  # samples made at once
+#: Where sensors tell their own orientation, so many samples of a seek are given one by one: the walk by that
+#: orientation is made of each. In a longer recording it begins where a seek lands.
+MOST_ONE_BY_ONE = 60_000
 #: A seek gives the first and the last samples one by one: what watches a stream tells by them.
 WATCHED_NS = 12_000_000_000
 
@@ -118,8 +121,10 @@ class Replay:
         self._journal = recording.journal if changes else None
         self._orders = orders_by_place(self._journal)
         self._places = sorted(self._orders)
-        self._stretches = stretches
-        self._landings = Landings(recording, self._timeline, key) if key and self._journal else None
+        one_by_one = 0 < orientations(recording) <= MOST_ONE_BY_ONE
+        self._stretches = stretches and not one_by_one
+        keyed = bool(key) and not one_by_one
+        self._landings = Landings(recording, self._timeline, key) if keyed and self._journal else None
         self._next = 0  # the first sample not yet released
         self._begun = False  # the playhead waits for the reader
         self._restart = False
@@ -303,6 +308,11 @@ class Replay:
     def _seconds_to_next(self) -> float:
         ahead_ns = self._timeline.elapsed_ns(self._next) - self._playhead_ns()
         return max(ahead_ns / self.speed, _BURST_NS) * 1e-9
+
+
+def orientations(recording: Recording) -> int:
+    """How many samples come from sensors that tell their own orientation."""
+    return sum(len(samples) for samples in recording.sensors if samples.device_q_nb is not None)
 
 
 def orders_by_place(journal: Journal | None) -> dict[int, list[Order]]:

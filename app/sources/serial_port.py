@@ -85,7 +85,8 @@ class SerialPort(Live):
         found = f"{started.device}: {started.evidence}"
         serial = str(getattr(started.setup, "serial", "") or "")
         serials = {spec.foot: f"{kind.title} {serial}"} if serial else {}
-        told = (found, *assumed, *decoder.notes)
+        firmware = str(getattr(started.setup, "firmware", "") or "")
+        told = (found, *([f"firmware {firmware}"] if firmware else []), *assumed, *decoder.notes)
         return SourceInfo(name, what, roles, assumed=told, line=_line(decoder), serials=serials)
 
     @property

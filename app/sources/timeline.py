@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.blocks import BLOCK
-from app.motion import Ints, Recording, Rows, Sample, Samples, Stretch
+from app.motion import Ints, Quaternion, Recording, Rows, Sample, Samples, Stretch
 
 
 class Timeline:
@@ -98,8 +98,9 @@ def _samples(samples: Samples, first: int, last: int, host_ns: int) -> Iterator[
     sensor, start_ns = samples.sensor, samples.device_ns
     rows = samples.matrix[first:last].tolist()
     flags = samples.saturation[first:last].tolist()
-    for seq, ((elapsed_ns, fx, fy, fz, wx, wy, wz, mx, my, mz), saturation) in enumerate(
-        zip(rows, flags, strict=True), start=first
+    told = _orientations(samples, first, last)
+    for seq, ((elapsed_ns, fx, fy, fz, wx, wy, wz, mx, my, mz), saturation, q_nb) in enumerate(
+        zip(rows, flags, told, strict=True), start=first
     ):
         yield Sample(
             sensor,
@@ -110,4 +111,12 @@ def _samples(samples: Samples, first: int, last: int, host_ns: int) -> Iterator[
             (wx, wy, wz),
             (mx, my, mz) if mx == mx else None,  # NaN: no magnetometer
             saturation,
+            q_nb,
         )
+
+
+def _orientations(samples: Samples, first: int, last: int) -> list[Quaternion | None]:
+    """What the sensor itself computed, row by row."""
+    if samples.device_q_nb is None:
+        return [None] * (last - first)
+    return [(w, x, y, z) if w == w else None for w, x, y, z in samples.device_q_nb[first:last].tolist()]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -9,7 +11,10 @@ import pytest
 
 from app.__main__ import main
 from app.formats.reading import read
+from app.session import Session
+from app.settings import Settings
 from app.sources.files import load
+from app.sources.timeline import Timeline
 
 SPEC = "sim:walk?path=straight&feet=2&still_s=1.5&strides=4&seed=3&noise=1&speed=0"
 
@@ -41,3 +46,27 @@ def test_it_ends_after_the_seconds_told(tmp_path: Path) -> None:
 def test_what_cannot_be_is_one_line(tmp_path: Path, capsys, wrong: list[str]) -> None:
     assert main(["record", "--source", SPEC, "--record", str(tmp_path), *wrong]) == 2
     assert capsys.readouterr().err.count("\n") == 1
+
+
+def test_a_sensor_keeps_its_name_number_and_orientation_in_its_recording(tmp_path: Path) -> None:
+    """They are known only once it has answered; its orientation is walked by in a replay as it was live."""
+    command = [sys.executable, "-m", "app", "emulate", "mip", "--source", "sim:walk?still_s=1&strides=3"]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sensor:
+        assert sensor.stdout is not None
+        spec = f"serial:{sensor.stdout.readline().strip()}?device=mip&baud=115200"
+        told = main(["record", "--source", spec, "--record", str(tmp_path), "--seconds", "6"])
+        sensor.kill()
+    assert told == 0
+    (path,) = tmp_path.glob("*.mcap")
+    recording = load(path)
+    assert recording.serials["foot"].startswith("MicroStrain/HBK MIP ")
+    said = "; ".join(recording.assumed)
+    assert "read as MicroStrain/HBK MIP at 115200 baud" in said
+    assert "firmware" in said
+    session = Session(Settings())
+    timeline = Timeline(recording)
+    for sample in timeline.cut(0, len(timeline), 0):
+        session.take(sample)
+    own = session.snapshot().own["foot"]
+    assert own.distance_m > 1.0
+    assert own.tilt_rad < 0.1
