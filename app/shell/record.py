@@ -10,15 +10,22 @@ from pathlib import Path
 
 from app.formats.journal import Start
 from app.home.calibrations import Corrections
+from app.home.key import key
 from app.motion import InputError, Order, RecorderState, RestartHere, Sample
 from app.outputs.recorder import Recorder
+from app.saving import Saver
+from app.session import Session
 from app.settings import BUILT_IN
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.source import Source
+from app.warm import warm_up
 
 #: A recording without a browser may take longer to end: nobody waits for the page.
 CLOSE_S = 30.0
+#: Samples between looks whether a state is due, and memory for the walk as it is estimated.
+LOOK_AFTER = 32
+BUDGET = 64 * 2**20
 #: What a walk from the recording starts with.
 START = BUILT_IN["default"]
 
@@ -28,7 +35,8 @@ def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str],
     source = open_source(spec, finish=True, changes=False)
     if isinstance(source, PhoneSource):
         raise InputError(f"{spec}: a phone comes by the page's port: walk --source {spec} --record {folder}")
-    recorder = Recorder(folder, "default", spec, source.info, source.made_by)
+    warm_up(START.estimator)
+    recorder = Recorder(folder, "default", spec, source.info, source.made_by, key=key())
     tell(f"Recording to {recorder.path}  (Ctrl-C ends it)")
     recorder.start(Start(START, START, False))
     try:
@@ -51,13 +59,22 @@ async def _fill(source: Source, recorder: Recorder, seconds: float | None) -> No
 
 async def _take(source: Source, recorder: Recorder) -> None:
     taken, corrections = 0, Corrections(lambda: source.info)
+    session, saver = Session(START, budget_bytes=BUDGET), Saver()
+    saver.begin(session)
     async for item in source:
         taken += 1
         if isinstance(item, RestartHere):
-            recorder.order(taken, Order(item, "replay", 0))
+            again = Order(item, "replay", 0)
+            session.apply(again)
+            saver.begin(session)
+            recorder.order(taken, again)
             recorder.start(Start(START, START, False))
         elif isinstance(item, Sample):
-            recorder.sample(corrections.apply(item))
+            sample = corrections.apply(item)
+            session.take(sample)
+            recorder.sample(sample)
+            for due in saver.due(session) if taken % LOOK_AFTER == 0 else ():
+                recorder.estimate(*due)
             while source.replay and recorder.waiting > 10_000:  # as fast as possible is as fast as the disk
                 await asyncio.sleep(0.01)
         if not recorder.on:

@@ -18,7 +18,9 @@ from tests.formats.walks import random_samples, write
 GPX = '<gpx><trk><trkseg><trkpt lat="48" lon="11"/><trkpt lat="48.001" lon="11"/></trkseg></trk></gpx>'
 
 
-def asked(folder: Path, *commands: m.Play | m.Rename | m.Share) -> tuple[Librarian, list[str], list[Source]]:
+def asked(
+    folder: Path, *commands: m.Play | m.Rename | m.Share | m.SetDeclination
+) -> tuple[Librarian, list[str], list[Source]]:
     """Each command after the one before has come to its end."""
     said: list[str] = []
     opened: list[Source] = []

@@ -11,12 +11,19 @@ import pytest
 
 from app.__main__ import main
 from app.formats.reading import read
+from app.formats.states import read_state
+from app.home.key import key
 from app.session import Session
 from app.settings import Settings
 from app.sources.files import load
 from app.sources.timeline import Timeline
 
 SPEC = "sim:walk?path=straight&feet=2&still_s=1.5&strides=4&seed=3&noise=1&speed=0"
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path_factory: pytest.TempPathFactory, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path_factory.mktemp("config")))
 
 
 def test_what_is_recorded_opens_as_the_same_walk(tmp_path: Path, capsys) -> None:
@@ -31,6 +38,18 @@ def test_what_is_recorded_opens_as_the_same_walk(tmp_path: Path, capsys) -> None
     made = make_walk(query).recording
     for one, other in zip(made.sensors, load(path).sensors, strict=True):
         np.testing.assert_array_equal(one.matrix, other.matrix)
+
+
+def test_a_long_recording_keeps_states_that_this_user_believes(tmp_path: Path) -> None:
+    spec = "sim:walk?path=oval&feet=2&duration_s=70&seed=3&noise=1&speed=0"
+    assert main(["record", "--source", spec, "--record", str(tmp_path)]) == 0
+    (path,) = tmp_path.glob("*.mcap")
+    journal = read(path.name, path.read_bytes()).journal
+    assert journal is not None
+    rows = {(sensor, state.row) for _, sensor, data in journal.states if (state := read_state(data, key()))}
+    assert sorted(sensor for sensor, _ in rows) == ["left", "left", "right", "right"]
+    assert all(2900 <= row <= 6600 for _, row in rows)
+    assert [state[:2] for state in journal.states] == [way[:2] for way in journal.ways]
 
 
 def test_it_ends_after_the_seconds_told(tmp_path: Path) -> None:
