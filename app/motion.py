@@ -797,6 +797,7 @@ class TrackView(NamedTuple):
     settings: Settings
     feet: tuple[FootView, ...]
     smoothed_s: float | None = None  # estimated in hindsight up to this time; None: as it was live
+    linked: bool = False  # two feet have one heading
 
 
 class PendulumView(NamedTuple):

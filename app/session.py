@@ -303,7 +303,8 @@ class Session:
         """The same job, for the samples that are here now."""
         self._jobs += 1
         stores = {sensor: store.samples.share() for sensor, store in self.stores.items() if store.samples}
-        job = replace(job, number=self._jobs, epoch=self.epoch, biases=dict(self.biases))
+        worn = {sensor: store.worn for sensor, store in self.stores.items()}
+        job = replace(job, number=self._jobs, epoch=self.epoch, biases=dict(self.biases), worn=worn)
         return replace(job, stores=stores, bases=self.main.bases())
 
     def _apply_candidate(self, order: m.Order) -> None:

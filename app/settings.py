@@ -219,6 +219,16 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
+    feet_apart_m: float = _setting(
+        1.0,
+        Limit(
+            "Feet at most apart", "d", "m",
+            "In hindsight, two feet: how far apart they can be when one touches down, or 0.65 of a longer"
+            " stride; it keeps both headings together. 0: each foot by itself.",
+            0.0, 3.0, (0.0, 2.0), 0.05,
+            only="kalman",
+        ),
+    )  # fmt: skip
     hindsight: bool = _setting(
         False,
         Limit(

@@ -13,6 +13,7 @@ import numpy as np
 
 from app.blocks import BLOCK, Blocks
 from app.clocks import Clock, KnownClock
+from app.estimator.feet import Worn, link_worn
 from app.estimator.landing import landed
 from app.estimator.smoother import finish
 from app.estimator.tracker import Checkpoint, Tracker
@@ -111,6 +112,11 @@ class SensorStore:
     def elapsed_s(self) -> float:
         """Seconds from the first sample to the last."""
         return (self._last_ns - self._first_ns) * 1e-9
+
+    @property
+    def worn(self) -> Worn:
+        """Which foot, and its clock, as roughly as it is known live and in a replay alike."""
+        return Worn(self.role, round(self.shared_s(0.0), 2), 1.0 + round(self.clock.line.slope, 5))
 
     def shared_s(self, elapsed_s: float) -> float:
         """Seconds since this sensor's first sample, in those of the clock that all sensors share."""
@@ -274,6 +280,7 @@ class Track:
         self.biases = biases
         self.feet: dict[str, FootTrack] = {}
         self.smoothed_s: float | None = None  # since the first sample; None: nothing is smoothed
+        self.linked = False  # two feet have one heading
 
     def advance(self, sensor: str, store: Blocks, base: Checkpoint | None = None) -> None:
         """Take a sensor's new samples; a sensor not seen before joins, from ``base`` if blocks are gone."""
@@ -283,12 +290,15 @@ class Track:
             foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, base, known)
         foot.advance(store)
 
-    def look_back(self, stores: Mapping[str, Blocks]) -> None:
-        """Every sensor's walk in hindsight, where the settings ask for it."""
+    def look_back(self, stores: Mapping[str, Blocks], worn: Mapping[str, Worn]) -> None:
+        """Every sensor's walk in hindsight, where the settings ask for it; two feet together."""
         for sensor, foot in self.feet.items():
             if finish(foot.tracker, stores[sensor]):
                 block, place = stores[sensor].block(foot.tracker.rows.end - 1)
                 self.smoothed_s = max(self.smoothed_s or 0.0, float(block[place, 0]) * 1e-9)
+        if self.smoothed_s is not None and self.feet.keys() <= worn.keys():
+            trackers = {sensor: foot.tracker for sensor, foot in self.feet.items()}
+            self.linked = link_worn(trackers, worn, stores, self.settings.feet_apart_m)
 
     def drop_before(self, sensor: str, row: int) -> None:
         """Let a sensor's rows before ``row`` go, as its samples have gone."""
@@ -304,7 +314,7 @@ class Track:
     def view(self, stores: Mapping[str, SensorStore], true: Mapping[str, TruePlace]) -> TrackView:
         """The whole track now."""
         feet = (foot.view(stores[sensor], true.get(sensor)) for sensor, foot in self.feet.items())
-        return TrackView(self.name, self.settings, tuple(feet), self.smoothed_s)
+        return TrackView(self.name, self.settings, tuple(feet), self.smoothed_s, self.linked)
 
     @property
     def nbytes(self) -> int:
@@ -341,6 +351,7 @@ class Reestimation:
     epoch: int = 0  # of the session when it was given out
     look_back: bool = False  # smooth it when it is there
     biases: Biases = field(default_factory=dict)  # known before the walk
+    worn: Mapping[str, Worn] = field(default_factory=dict)  # by sensor
 
     def run(self) -> Track:
         """The new track over all samples that were there when the work was given out."""
@@ -348,5 +359,5 @@ class Reestimation:
         for sensor, store in self.stores.items():
             track.advance(sensor, store, self.bases.get(sensor))
         if self.look_back:
-            track.look_back(self.stores)
+            track.look_back(self.stores, self.worn)
         return track

@@ -533,3 +533,27 @@ def test_one_drag_is_one_step_to_undo() -> None:
     assert depths == [1, 1, 1, 2, 3]
     tell(session, m.Undo(), m.Undo())
     assert session.main.settings.gain_stance == 0.7
+
+
+def test_two_feet_in_hindsight_have_one_heading_and_the_page_is_told() -> None:
+    samples = [one_by_one(foot("feet=2&strides=6&rate_hz=50", number)) for number in (0, 1)]
+    both = [sample for pair in zip(*samples, strict=True) for sample in pair]
+
+    def looked_back() -> Session:
+        session = fed(Session(Settings(estimator="kalman", hindsight=True)), both)
+        assert not session.snapshot().main.linked
+        tell(session, m.LookBack())
+        return session
+
+    once, again = looked_back(), looked_back()
+    assert once.snapshot().main.linked
+    assert main_rows(once, "right").tobytes() == main_rows(again, "right").tobytes()
+    assert not session_of_one().snapshot().main.linked
+
+
+def session_of_one() -> Session:
+    session = fed(
+        Session(Settings(estimator="kalman", hindsight=True)), one_by_one(foot("strides=6&rate_hz=50"))
+    )
+    tell(session, m.LookBack())
+    return session

@@ -13,7 +13,10 @@ MOST_DOUBT_RADPS = 0.5 * PRIOR_RADPS
 
 
 def learnt(tracker: Tracker) -> GyroBias | None:
-    """The bias at the walk's end; None where no rest said anything of it, or too little."""
+    """The bias by the walk's rests; None where none said anything of it, or too little.
+
+    What the filter made of it in walking is left out: at low rates it takes the errors of swings for bias.
+    """
     state = tracker.state
     if "bias_info" not in (state.dtype.names or ()) or not tracker.levelled:
         return None
@@ -22,6 +25,6 @@ def learnt(tracker: Tracker) -> GyroBias | None:
     doubt = 1.0 / np.sqrt(info)
     if np.any(told_by_rests <= 0.0) or np.any(doubt > MOST_DOUBT_RADPS):
         return None
-    x, y, z = state["gyro_bias"][0].tolist()
+    x, y, z = (state["bias_sum"][0] / info).tolist()
     u, v, w = doubt.tolist()
     return GyroBias((x, y, z), (u, v, w))

@@ -24,6 +24,7 @@ COMPARED: Compared = (
     ("Distance", lambda foot: foot.distance_m, 2, "m"),
     ("Strides", lambda foot: foot.strides, 0, ""),
 )
+LINKED = '<div class="ss-note">Feet linked: one heading, by how far apart they can be.</div>'
 UNLINKED = '<div class="ss-note">Feet not linked: each has its own origin and start heading.</div>'
 
 
@@ -56,7 +57,9 @@ def message(snapshot: Snapshot, status: Status) -> str:
 def feet(snapshot: Snapshot, own: bool = False) -> str:
     """A card per foot; ``own``: the walks by the sensors' own orientations are shown."""
     cards = "".join(_card(foot) for foot in snapshot.main.feet)
-    note = UNLINKED if len(snapshot.main.feet) > 1 else ""
+    note = ""
+    if len(snapshot.main.feet) > 1:
+        note = LINKED if snapshot.main.linked else UNLINKED
     return (
         cards + note + hindsight(snapshot) + legend(snapshot, own)
         if cards

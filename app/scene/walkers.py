@@ -154,6 +154,7 @@ class Walkers:
         if made_for != self._made_for:
             self._make(feet, heading)
             self._made_for = made_for
+        self._show_note(len(feet) > 1 and not snapshot.main.linked)
         places = [self._walkers[f.sensor].draw(f) for f in feet]
         ghosts = {f.sensor: f for f in snapshot.candidate.feet} if snapshot.candidate else {}
         for sensor, walker in self._walkers.items():
@@ -184,12 +185,14 @@ class Walkers:
             for f in feet
         }  # fmt: skip
         self.show_axes(self._axes)
-        self._show_note(two)
 
-    def _show_note(self, two: bool) -> None:
+    def _show_note(self, on: bool) -> None:
+        if self._note is None and not on:
+            return
         if self._note is None:
             self._note = self._scene.add_label(
                 "/ned/feet_note", "feet not linked", position=(-0.28, 0.0, 0.08), anchor="center-center",
                 font_size_mode="screen", font_screen_scale=0.8,
             )  # fmt: skip
-        self._note.visible = two
+        if self._note.visible != on:
+            self._note.visible = on

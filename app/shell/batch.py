@@ -11,13 +11,14 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from app.estimator.bias import learnt
+from app.estimator.feet import Worn, link_worn
 from app.estimator.smoother import finish
 from app.estimator.tracker import Tracker, store, track
 from app.gestures.default import DefaultDecoder
 from app.gestures.merge import changes, decode
 from app.gestures.papers import PapersDecoder
 from app.gestures.words import Decision
-from app.motion import ATTITUDE, Floats, GyroBias, InputError, Recording, Role, Samples
+from app.motion import ATTITUDE, ClockLine, Floats, GyroBias, InputError, Recording, Role, Samples
 from app.outputs import tables
 from app.settings import Settings
 from app.sources.files import load, printable
@@ -35,6 +36,7 @@ class Processed(NamedTuple):
     settings: Settings
     trackers: dict[str, Tracker]
     estimator_s: float
+    linked: bool = False  # two feet have one heading
 
 
 def process(spec: str, settings: Settings, bias_from: str | None = None) -> Processed:
@@ -74,16 +76,29 @@ def estimate(
     if settings.hindsight:
         warm_hindsight()
     estimator_s = 0.0
-    trackers = {}
+    trackers: dict[str, Tracker] = {}
+    stores = {}
     for sensor in recording.sensors:
-        samples = store(sensor)
+        samples = stores[sensor.sensor] = store(sensor)
         tracker = Tracker(settings, known=(biases or {}).get(sensor.sensor))
         began = time.perf_counter()
         tracker.advance(samples)
         finish(tracker, samples)
         estimator_s += time.perf_counter() - began
         trackers[sensor.sensor] = tracker
-    return Processed(recording, settings, trackers, estimator_s)
+    began = time.perf_counter()
+    linked = settings.hindsight and link_worn(trackers, worn(recording), stores, settings.feet_apart_m)
+    estimator_s += time.perf_counter() - began
+    return Processed(recording, settings, trackers, estimator_s, linked)
+
+
+def worn(recording: Recording) -> dict[str, Worn]:
+    """Where each sensor is worn, and its clock beside the others'."""
+    found = {}
+    for sensor in recording.sensors:
+        line = recording.clocks.get(sensor.sensor) or ClockLine(sensor.device_ns, sensor.device_ns)
+        found[sensor.sensor] = Worn(sensor.role, line.host(sensor.device_ns) * 1e-9, 1.0 + line.slope)
+    return found
 
 
 def summary(done: Processed) -> dict[str, object]:
@@ -99,6 +114,7 @@ def summary(done: Processed) -> dict[str, object]:
         "rate_hz": sensors[0].rate_hz if sensors else 0.0,
         "estimator_s": done.estimator_s,
         "settings": asdict(done.settings),
+        "feet_linked": done.linked,
         "feet": {sensor: foot_summary(tracker) for sensor, tracker in done.trackers.items()},
     }
 
