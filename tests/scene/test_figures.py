@@ -74,7 +74,7 @@ def test_every_figure_has_its_unit() -> None:
 def test_two_feet_are_said_not_to_be_linked() -> None:
     two = fakes.snapshot(9.7, two=True)
     assert "not linked" in figures.feet(two)
-    linked = figures.feet(two._replace(main=two.main._replace(linked=True)))
+    linked = figures.feet(replace(two, main=two.main._replace(linked=True)))
     assert "not linked" not in linked
     assert "Feet linked" in linked
     assert "not linked" not in figures.feet(fakes.snapshot(9.7))
