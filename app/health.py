@@ -215,17 +215,17 @@ def _transport(r: Recent) -> list[tuple[Light, str]]:
     found = []
     if r.silent_s > SILENT_S:
         found.append((Light.RED, f"silent for {r.silent_s:.1f} s: is it on, charged and in reach?"))
-    if r.lost >= 3 and (light := _level(r.lost / all_of, LOST)):
+    if r.lost >= 3 and (light := light_of(r.lost / all_of, LOST)):
         share = f"{100.0 * r.lost / all_of:.2g} % of samples lost in the last 10 s"
         found.append((light, f"{share}: move the receiver closer"))
-    if r.late_ms is not None and (light := _level(r.late_ms, LATE_MS)):
+    if r.late_ms is not None and (light := light_of(r.late_ms, LATE_MS)):
         found.append(
             (light, f"samples come up to {r.late_ms:.0f} ms late: a shorter link, or fewer devices on it")
         )
-    if r.rejected >= 3 and (light := _level(r.rejected / came, SPOILT)):
+    if r.rejected >= 3 and (light := light_of(r.rejected / came, SPOILT)):
         share = f"{100.0 * r.rejected / came:.2g} % of samples are no use (not finite, or out of order)"
         found.append((light, f"{share}: check cable and baud rate"))
-    if r.duplicated >= 3 and (light := _level(r.duplicated / came, SPOILT)):
+    if r.duplicated >= 3 and (light := light_of(r.duplicated / came, SPOILT)):
         share = f"{100.0 * r.duplicated / came:.2g} % of samples came twice"
         found.append((light, f"{share}: is it sent over two ways?"))
     if 0.0 < r.rate_hz < SLOW_HZ:
@@ -242,10 +242,10 @@ def _sensing(r: Recent, uses_field: bool) -> list[tuple[Light, str]]:
     """What the sensor itself does."""
     found = []
     usual, most = GRAVITY_MPS2
-    if r.samples and (light := _level(r.saturated / r.samples, SATURATED)):
+    if r.samples and (light := light_of(r.saturated / r.samples, SATURATED)):
         share = f"{100.0 * r.saturated / r.samples:.2g} % of samples at the end of the sensor's range"
         found.append((light, f"{share}: choose a larger range"))
-    if r.stance_mps2 is not None and (light := _level(r.stance_mps2, STANCE_MPS2)):
+    if r.stance_mps2 is not None and (light := light_of(r.stance_mps2, STANCE_MPS2)):
         shakes = f"it shakes by {r.stance_mps2:.1f} m/s² while the foot stands"
         found.append((light, f"{shakes}: tighten the strap"))
     if r.gravity_mps2 is not None and abs(r.gravity_mps2 - usual) > most:
@@ -256,7 +256,8 @@ def _sensing(r: Recent, uses_field: bool) -> list[tuple[Light, str]]:
     return found
 
 
-def _level(value: float, limits: tuple[float, float]) -> Light | None:
+def light_of(value: float, limits: tuple[float, float]) -> Light | None:
+    """Amber or red from these limits on; None below."""
     amber, red = limits
     return Light.RED if value >= red else Light.AMBER if value >= amber else None
 

@@ -676,6 +676,7 @@ class Recent(NamedTuple):
     disturbance: float | None  # how far the field's strength strays from that of the start, 0.1 = 10 %
     drift_ppm: float | None  # the sensor's clock against the host's, positive: too fast
     silent_s: float  # behind the sensor that came last
+    damaged: float = 0.0  # part of what its line brings that makes no packet
 
 
 class Health(NamedTuple):

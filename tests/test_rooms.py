@@ -22,6 +22,7 @@ HEART = {
     "hanging",
     "health",
     "preflight",
+    "damage",
     "blocks",
     "warm",
     "motion",

@@ -69,6 +69,8 @@ def table(health: Health) -> list[tuple[str, str]]:
         ("twice, rejected", f"{r.duplicated}, {r.rejected}"),
         ("saturated", f"{r.saturated} ({words.percent(r.saturated, r.samples)})"),
     ]
+    if r.damaged:
+        rows.append(("damaged packets", f"{words.number(100 * r.damaged, 1)} %"))
     if r.jitter_ms is not None:
         rows.append(("jitter, latest", f"{words.number(r.jitter_ms, 1)} ms, {words.number(r.late_ms, 0)} ms"))
     if r.stance_mps2 is not None:

@@ -22,6 +22,7 @@ import numpy as np
 from app import motion as m
 from app import preflight
 from app.clocks import Clock, clock_for
+from app.damage import Damage
 from app.door.access import Access
 from app.door.files import Files
 from app.door.front import Door
@@ -121,6 +122,7 @@ class Viewer:
         # two for a search, one so that a slider never waits for it
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
         self._prepare_source()
+        self._damage = Damage()
         self._seen: m.Snapshot | None = None  # the newest that was drawn
         self._shown: m.Status | None = None  # with it
         self._frames = 0
@@ -498,7 +500,8 @@ class Viewer:
                 async with asyncio.timeout(2 * EARLY_S):
                     await self._fresh.wait()
             try:
-                snapshot = self._seen = self._session.snapshot()
+                snapshot, counters = self._session.snapshot(), self._source.counters
+                snapshot = self._seen = self._damage.seen(snapshot, counters, time.monotonic())
                 self._record_walk(snapshot.main.feet)
                 self._shown = self._before.look(snapshot, self._status_now())
                 self._session.name_feet(self._before.names)
