@@ -11,6 +11,9 @@ from app.motion import Outline, Role, Way, role_of
 #: Bytes of a file from an offset on: (offset, count) → bytes, fewer at its end.
 ReadAt = Callable[[int, int], bytes]
 
+#: More than this takes as long as all of it: a replay recorded as fast as it went has large chunks.
+MOST_BYTES = 16_000_000
+
 
 def glance(name: str, size: int, read_at: ReadAt) -> Outline | None:
     """The trails that the file tells and how long it is; None if it tells none or has no good summary."""
@@ -18,7 +21,10 @@ def glance(name: str, size: int, read_at: ReadAt) -> Outline | None:
     roles = {} if found is None else _roles(found)
     if found is None or not roles:
         return None
-    chunks = b"".join(read_at(at, length) for at, length, channels in found.chunks if channels & set(roles))
+    wanted = [(at, length) for at, length, channels in found.chunks if channels & set(roles)]
+    if sum(length for _, length in wanted) > MOST_BYTES:
+        return None
+    chunks = b"".join(read_at(at, length) for at, length in wanted)
     ways: dict[int, list[Way]] = {number: [] for number in roles}
     for message in mcap.messages(chunks, found.channels):
         way = read_way(message.data) if message.channel in ways else None

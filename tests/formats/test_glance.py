@@ -73,6 +73,11 @@ def test_it_reads_the_summary_and_the_chunks_with_a_way_only() -> None:
     assert len(asked) == 2 * 3 + 2  # twice head, foot and summary; two chunks
 
 
+def test_one_whose_chunks_are_too_large_to_be_glanced_at_shows_nothing(monkeypatch) -> None:
+    monkeypatch.setattr(glances, "MOST_BYTES", 1_000)
+    assert at_a_glance(WHOLE) is None
+
+
 def test_one_without_ways_shows_nothing() -> None:
     assert at_a_glance(write(random_samples(40))) is None
 
