@@ -14,11 +14,12 @@ from app.motion import Floats, Trail, TrailPiece
 Segments = NDArray[np.float32]  # [k, 2, 3]
 
 #: Segments in a piece, and how far from the path a line may lie: fresh, older, old. Metres.
-PIECE = 256
+PIECE = 64
 TOLERANCES_M = (0.005, 0.03, 0.15)
-#: A level with more pieces than this merges its oldest MERGED into one of the next level.
-PIECES = 8
-MERGED = 4
+#: Small pieces, so that what lies out of view is not drawn. A level with more than this merges its oldest
+#: MERGED into one of the next level.
+PIECES = 24
+MERGED = 8
 #: Points nearer than this to the one before are left out. Metres.
 APART_M = 0.005
 #: Points that one straight segment stands for, at most.
