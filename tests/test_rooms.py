@@ -39,6 +39,7 @@ EDGES |= {"opinions", "launch"}
 SHELL = {"shell", "commands", "__main__", "__init__"}
 #: Files of shell/ that others of it wire in.
 WIRED = {
+    "measuring": {"doctor"},
     "run": {"annexe", "aside", "before", "hand_in", "librarian", "remembering"},
     "librarian": {"aside", "shelf"},
 }

@@ -18,14 +18,23 @@ def add(commands: Commands) -> None:
         "--record", metavar="DIR", type=Path, default=Path("recordings"), help="to be recorded to"
     )
     seen.add_argument("--port", type=int, default=8080)
+    seen.add_argument(
+        "--source", metavar="SPEC", action="append", default=[],
+        help="measure this live source too (default: every port that may be opened); again for another",
+    )  # fmt: skip
     add_json(seen)
 
 
 def run(options: argparse.Namespace) -> int:
     """Look, and tell."""
-    from app.shell import doctor
+    from app.shell import doctor, measuring
 
-    findings = doctor.examine(doctor.Machine(recordings=options.record, port=options.port))
+    machine = doctor.Machine(recordings=options.record, port=options.port)
+    findings = doctor.examine(machine)
+    sources = options.source or [
+        f"serial:{port}" for port in doctor.ports(machine) if doctor.usable(machine, port)
+    ]
+    findings += measuring.measured(sources)
     well = all(finding.state != "problem" for finding in findings)
     if options.json:
         print(json.dumps({"ok": well, "findings": [finding._asdict() for finding in findings]}))

@@ -96,17 +96,27 @@ def _versions(machine: Machine) -> Iterator[Finding]:
 
 
 def _serial(machine: Machine) -> Iterator[Finding]:
-    ports = sorted(path for pattern in PORTS for path in (machine.root / "dev").glob(pattern))
-    if not ports:
+    there = ports(machine)
+    if not there:
         yield Finding(
             "serial ports",
             "advice",
             "none found",
             "plug the sensor in; in a container or WSL pass the port through",
         )
-    for path in ports:
+    for path in there:
         yield _rights(machine, path)
         yield from _latency(machine, path)
+
+
+def ports(machine: Machine) -> list[Path]:
+    """The serial ports that sensors are on."""
+    return sorted(path for pattern in PORTS for path in (machine.root / "dev").glob(pattern))
+
+
+def usable(machine: Machine, port: Path) -> bool:
+    """Whether this user may open it."""
+    return _rights(machine, port).state == "ok"
 
 
 def _rights(machine: Machine, path: Path) -> Finding:

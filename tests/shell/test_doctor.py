@@ -9,10 +9,16 @@ import subprocess
 import sys
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 
+from app.clocks import LiveClock
+from app.health import Monitor
+from app.motion import GaitPhase, InputError, Sample, SourceInfo
+from app.shell import measuring
 from app.shell.doctor import Finding, Machine, examine
+from app.shell.measuring import measured
 
 Make = Callable[..., Machine]
 
@@ -37,7 +43,7 @@ def machine(tmp_path: Path) -> Make:
             "cache": tmp_path / "cache", "recordings": tmp_path / "recordings",
             "search": str(tmp_path / "bin"), "port": free_port(),
         }  # fmt: skip
-        return Machine(**(usual | changes))  # type: ignore[arg-type]
+        return Machine(**(usual | changes))
 
     return make
 
@@ -122,3 +128,37 @@ def test_as_a_command_it_tells_json(tmp_path: Path) -> None:
     told = json.loads(done.stdout)
     assert isinstance(told["ok"], bool)
     assert {"what", "state", "told", "remedy"} == set(told["findings"][0])
+
+
+def test_a_sensor_is_measured_for_some_seconds(tmp_path: Path) -> None:
+    """A real pseudo-terminal with a line that damages every thirtieth packet."""
+    command = [sys.executable, "-m", "app", "emulate", "mip", "--source", "sim:walk?loop=1"]
+    with subprocess.Popen([*command, "--fault", "flip=0.05%"], stdout=subprocess.PIPE, text=True) as sensor:
+        assert sensor.stdout is not None
+        spec = f"serial:{sensor.stdout.readline().strip()}?device=mip&baud=115200"
+        (finding,) = measured([spec], 3.0)
+        sensor.kill()
+    assert finding.what.endswith(" foot")
+    assert "MicroStrain/HBK MIP at 115200 baud: 100.0 Hz, jitter" in finding.told
+    assert "% damaged" in finding.told
+    assert finding.state != "ok"
+    with pytest.raises(InputError, match="live sensor"):
+        measured(["sim:walk"])
+
+
+def test_a_silent_port_is_advice_and_sound_samples_are_as_they_should(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(measuring, "WAIT_S", 0.1)
+    (finding,) = measured(["udp:0"])
+    assert (finding.state, finding.told) == ("advice", "udp:0: nobody sends yet")
+    clock = LiveClock()
+    monitor = Monitor(clock)
+    for i in range(500):
+        clock.add(i * 10_000_000, i * 10_000_000)
+        sample = Sample("left", i, i * 10_000_000, i * 10_000_000, (0.0, 0.0, -9.8), (0.0, 0.0, 0.0))
+        monitor.add(sample, True, GaitPhase.SWING)
+    source = SimpleNamespace(info=SourceInfo("udp:9000", "datagrams"))
+    finding = measuring._finding(source, "left", monitor.recent(0.0, live=True))
+    told = "datagrams: 100.0 Hz, jitter 0.0 ms, nothing lost, as it should"
+    assert finding == Finding("udp:9000 left", "ok", told)
