@@ -43,7 +43,7 @@ def machine(tmp_path: Path) -> Make:
             "cache": tmp_path / "cache", "recordings": tmp_path / "recordings",
             "search": str(tmp_path / "bin"), "port": free_port(),
         }  # fmt: skip
-        return Machine(**(usual | changes))
+        return Machine(**(usual | changes))  # type: ignore[arg-type]
 
     return make
 
