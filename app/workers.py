@@ -58,7 +58,7 @@ def _here(tasks: Sequence[Task], tell: Tell) -> list[Done]:
 def _in_processes(tasks: Sequence[Task], jobs: int, tell: Tell) -> list[Done]:
     found: dict[int, Done] = {}
     for life in range(LIVES):
-        waiting = [number for number in range(len(tasks)) if number not in found]
+        waiting = [number for number in one_of_each_first(tasks) if number not in found]
         try:
             for number, done in _pooled(tasks, waiting, jobs):
                 found[number] = done
@@ -68,6 +68,17 @@ def _in_processes(tasks: Sequence[Task], jobs: int, tell: Tell) -> list[Done]:
             if life == LIVES - 1:
                 raise
     return [found[number] for number in range(len(tasks))]
+
+
+def one_of_each_first(tasks: Sequence[Task]) -> list[int]:
+    """The tasks' numbers, one task of each function before all others.
+
+    So workers that begin side by side compile different things, and later find in the cache what the others
+    compiled: two would else spend half as much again on compiling the same.
+    """
+    first = {task.run: number for number, task in reversed(list(enumerate(tasks)))}
+    ahead = set(first.values())
+    return sorted(ahead) + [number for number in range(len(tasks)) if number not in ahead]
 
 
 def _pooled(tasks: Sequence[Task], waiting: Sequence[int], jobs: int) -> Iterator[tuple[int, Done]]:

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.studies.words import Task
-from app.workers import cores, run_all, run_task
+from app.workers import cores, one_of_each_first, run_all, run_task
 
 #: Compiling beside other work takes minutes.
 pytestmark = pytest.mark.timeout(600)
@@ -72,3 +72,11 @@ def test_a_timed_task_runs_twice_so_that_compiling_does_not_count(
 
 def test_there_is_a_core() -> None:
     assert cores() >= 1
+
+
+def test_one_task_of_each_function_comes_first_and_none_is_left_out() -> None:
+    tasks = [*TASKS[:3], Task(fail), *TASKS[3:], Task(count, ("a",)), Task(fail)]
+    order = one_of_each_first(tasks)
+    assert sorted(order) == list(range(len(tasks)))
+    assert [tasks[number].run for number in order[:3]] == [draw, fail, count]
+    assert order[3:] == sorted(order[3:])

@@ -81,8 +81,8 @@ def tasks(config: Config) -> Sequence[Task]:
     motions = {name: make(config.sensor) for name, make in MOTIONS.items()}
     return [
         Task(run_method, (config, method, name, motion.samples), timed=True)
-        for method in METHODS
         for name, motion in motions.items()
+        for method in METHODS
     ]
 
 
