@@ -6,6 +6,7 @@ import json
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from html import escape
+from itertools import groupby, zip_longest
 
 from app.outputs.chart import chart
 from app.outputs.chart_style import DARK, LIGHT, RULES
@@ -13,6 +14,7 @@ from app.studies.words import Row, Study, Table, Verdict
 
 _STYLE = f""":root{{color-scheme:light dark;{LIGHT}}}
 @media(prefers-color-scheme:dark){{:root{{{DARK}}}}}{RULES}"""
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 _PAGE = """
 body{margin:0 auto;max-width:76rem;padding:1.5rem;background:var(--paper);color:var(--ink);
 font:15px/1.5 system-ui,sans-serif}
@@ -20,7 +22,7 @@ h1{font-size:1.5rem}h2{font-size:1.2rem;margin-top:2.5rem;border-top:1px solid v
 p,dl{max-width:60rem}a{color:var(--c0)}
 table{border-collapse:collapse;margin:1rem 0;font-variant-numeric:tabular-nums}
 th,td{padding:.25rem .7rem;text-align:left;border-bottom:1px solid var(--line);vertical-align:top}
-th{color:var(--soft);font-weight:600}td.n{text-align:right;white-space:nowrap}
+th{color:var(--soft);font-weight:600}th.n,td.n{text-align:right;white-space:nowrap}
 .wide{overflow-x:auto}.why{color:var(--soft);max-width:30rem;font-size:.9em}
 .v{white-space:nowrap}.v::before{margin-right:.4em}
 .reproduced::before{content:"✓";color:var(--c2)}.close::before{content:"≈";color:var(--c4)}
@@ -55,7 +57,8 @@ def _in_words(rows: Sequence[Row]) -> str:
     told = ", ".join(f"{counts[verdict]} {verdict}" for verdict in Verdict if counts[verdict])
     return (
         f"{len(rows)} printed figures: {told}. Reproduced: equal to the printed digits, within the printed"
-        " bound, or within what chance allows. Close: not that, but near, and the reason is given. No data:"
+        " bound, or, where chance has a part, no further off than three standard errors (two for a spread)."
+        " Close: not that, but near, and the reason is given. No data:"
         " printed from measurements that were never published; ours is a simulation's, compared in shape."
     )
 
@@ -82,26 +85,40 @@ def _section(study: Study) -> str:
 
 
 def _rows(rows: Sequence[Row]) -> str:
-    names = ("printed figure", "printed", "got", "", "verdict", "why, or what it took")
-    head = f"<tr>{''.join(f'<th>{name}</th>' for name in names)}</tr>"
-    lines = "".join(
-        f"<tr><td>{escape(row.item)}</td><td class=n>{escape(_minus(row.printed_as))}</td>"
-        f"<td class=n>{number(row.got)}</td><td>{escape(row.unit)}</td>"
-        f'<td class="v {row.verdict.replace(" ", "-")}">{row.verdict}</td>'
-        f"<td class=why>{escape(row.why or row.needs)}</td></tr>"
-        for row in rows
+    head = (
+        "<tr><th>printed figure</th><th class=n>printed</th><th class=n>got</th><th></th><th>verdict</th>"
+        "<th>why, or what it took</th></tr>"
     )
+    lines = ""
+    for why, together in groupby(rows, key=lambda row: row.why or row.needs):
+        same = list(together)
+        said = f'<td class=why rowspan="{len(same)}">{escape(why)}</td>'
+        lines += "".join(_row(row, said if k == 0 else "") for k, row in enumerate(same))
     return f"<div class=wide><table>{head}{lines}</table></div>" if rows else ""
 
 
+def _row(row: Row, said: str) -> str:
+    return (
+        f"<tr><td>{escape(row.item)}</td><td class=n>{escape(_minus(row.printed_as))}</td>"
+        f"<td class=n>{number_beside(row.printed_as, row.got)}</td><td>{escape(row.unit)}</td>"
+        f'<td class="v {row.verdict.replace(" ", "-")}">{row.verdict}</td>{said}</tr>'
+    )
+
+
 def _table(table: Table) -> str:
-    head = "".join(f"<th>{escape(text)}</th>" for text in table.head)
+    numbers = [not isinstance(value, str) for value in table.lines[0]] if table.lines else []
+    head = "".join(
+        f"<th class=n>{escape(text)}</th>" if n else f"<th>{escape(text)}</th>"
+        for text, n in zip_longest(table.head, numbers)
+    )
     lines = "".join(f"<tr>{''.join(_cell(value) for value in line)}</tr>" for line in table.lines)
     return f"<h3>{escape(table.title)}</h3><div class=wide><table><tr>{head}</tr>{lines}</table></div>"
 
 
 def _cell(value: str | float) -> str:
-    return f"<td>{escape(value)}</td>" if isinstance(value, str) else f"<td class=n>{number(value)}</td>"
+    if isinstance(value, str):
+        return f"<td class=n>{value}</td>" if value == "–" else f"<td>{escape(value)}</td>"
+    return f"<td class=n>{number(value)}</td>"
 
 
 def _pairs(pairs: Mapping[str, object]) -> str:
@@ -121,8 +138,15 @@ def number(value: float) -> str:
     return _minus(f"{value:.4g}" if abs(value) < 1e4 else f"{value:.0f}")
 
 
+def number_beside(printed: str, value: float) -> str:
+    """With no fewer decimals than the printed figure, so that the two can be read side by side."""
+    decimals = len(printed.partition(".")[2])
+    shown = len(f"{value:.4g}".partition(".")[2])
+    exponents = "e" in printed.lower() + f"{value:.4g}"
+    return number(value) if exponents or shown >= decimals else _minus(f"{value:.{decimals}f}")
+
+
 def _minus(text: str) -> str:
     mantissa, e, exponent = text.partition("e")
-    if e:
-        return f"{mantissa} × 10^{int(exponent)}".replace("-", "−")
-    return text.replace("-", "−")
+    power = f" × 10{str(int(exponent)).translate(_RAISED)}" if e else ""
+    return mantissa.replace("-", "−") + power

@@ -28,6 +28,15 @@ _QUEST = (
 _LAW = "“printed”: 1/(2k), which is linear theory; from 30° it takes up to 3 % longer"
 
 
+_NOTES = {
+    "tilt table": "Turned and held, going nowhere: only noise is left, and the gyro takes most of it.",
+    "tilt table by iron": "From 10 to 40 s iron bends the field, and every heading with it. Who lets it bend"
+    " level too, the table of the vertical alone shows.",
+    "pendulum": "The swing's own acceleration passes for gravity, most where each sample is taken by itself.",
+    "foot": "A foot around a square: in each swing TRIAD, QUEST and FQA are lost, and back with each stance.",
+}
+
+
 @dataclass(frozen=True)
 class Config:
     """``gain``: of both filters on the motions; ``weight``: ρ of the magnetometer where it is weighted."""
@@ -232,5 +241,5 @@ def _motion_plots(motions: Mapping[str, Motion], found: Mapping[tuple[str, str],
             whole, _ = errors_deg(motion, found[method, name])
             coarse = np.array([_rms(part) for part in np.array_split(whole, 120)])
             curves.append(Curve(method, np.array([part.mean() for part in np.array_split(t, 120)]), coarse))
-        plots.append(Plot(f"Error: {name}", "time, s", "error, deg", tuple(curves), log_y=True))
+        plots.append(Plot(f"Error: {name}", "time, s", "error, deg", tuple(curves), _NOTES[name], log_y=True))
     return plots

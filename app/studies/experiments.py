@@ -21,7 +21,7 @@ class Case(NamedTuple):
     """One line of a table of the thesis. ``quantity`` is what was measured."""
 
     item: str
-    printed: str
+    printed: str  # nothing where there is only a figure
     true: float
     quantity: str  # distance | end | turned | horizontal | height
     legs: tuple[Leg, ...]
@@ -119,7 +119,7 @@ def table_of(title: str, outcomes: Sequence[Outcome]) -> Table:
         (
             f"{o.case.item}, {UNITS[o.case.quantity]}",
             o.case.true,
-            float(o.case.printed),
+            float(o.case.printed) if o.case.printed else "–",
             *(measure(o.by[m], o.case.quantity) for m in METHODS),
         )
         for o in outcomes

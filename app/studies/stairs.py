@@ -101,4 +101,5 @@ def _heights(outcomes: Sequence[Outcome]) -> Plot:
         )
         for name in ("thesis", "papers", "Kalman")
     )
-    return Plot("Height error of every climb", "climb", "error, cm", curves)
+    note = "; ".join(f"{k}: {o.case.item.removesuffix(', vertical')}" for k, o in enumerate(climbs, start=1))
+    return Plot("Height error of every climb: estimate less truth", "climb", "error, cm", curves, note + ".")

@@ -11,6 +11,8 @@ from app.studies.words import Row, Verdict
 ROUNDED = 0.5 + 1e-6
 #: So many standard errors apart two samples of the same thing still are.
 SIGMAS = 3.0
+#: A spread of fifty is known to 10 %: at three standard errors one half as large again would pass.
+SPREAD_SIGMAS = 2.0
 
 
 def last_place(printed: str) -> float:
@@ -51,13 +53,14 @@ class Judge:
         unit: str,
         *,
         error: float,
+        sigmas: float = SIGMAS,
         close: float = 0.1,
         why: str = "",
         needs: str = "",
     ) -> Row:
         """Reproduced if no further off than ``error`` (one standard error of the difference) lets it be."""
         off = abs(got - float(printed))
-        allowed = SIGMAS * error + 0.5 * last_place(printed)
+        allowed = sigmas * error + 0.5 * last_place(printed)
         near = off <= close * abs(float(printed))
         return self._row(item, printed, got, unit, _verdict(off <= allowed, near), why, needs)
 

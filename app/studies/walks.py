@@ -10,7 +10,7 @@ import numpy as np
 from app.motion import Floats, Vector
 from app.studies.late_start import SHORT, shortfall_plot
 from app.studies.monte_carlo import BLOCK, Errors, WalkConfig, ideal, walk_many
-from app.studies.verdicts import Judge
+from app.studies.verdicts import SPREAD_SIGMAS, Judge
 from app.studies.words import Curve, Done, Plot, Row, Study, Table, Task
 
 SCALES = (0.0, 0.1, 1.0, 10.0)
@@ -138,7 +138,8 @@ def noise_study(config: WalkConfig, done: Sequence[Done]) -> Study:
         "Fifty walks with noisy sensors",
         f"A straight walk of {config.strides} strides north with the papers' foot, {config.walks} times at"
         " each of four scales of the 3DM-GX1's noise; the adaptive-gain estimator of the 2012 paper. Errors"
-        " are truth less estimate; truth is the integral of the very acceleration the sensors are given.",
+        " are truth less estimate, as in Table 10; truth is the integral of the very acceleration that the"
+        " sensors are given.",
         asdict(config),
         (*rows, *_in_words(judge, config, errors, long)),
         (_ends_plot("Fig. 84 (and 12): where the walks end", errors[1:], _names(_TABLE_10)[1:]),
@@ -173,7 +174,7 @@ def _spread(judge: Judge, item: str, printed: str, got: Floats, why: str = "") -
     """Standard deviations of two samples of n: each is known to 1/√(2(n − 1))."""
     sigma = float(np.std(got, ddof=1))
     error = float(np.hypot(float(printed), sigma) / np.sqrt(2 * (len(got) - 1)))
-    return judge.chance(item, printed, sigma, "m", error=error, why=why)
+    return judge.chance(item, printed, sigma, "m", error=error, sigmas=SPREAD_SIGMAS, why=why)
 
 
 def _in_words(judge: Judge, config: WalkConfig, errors: Sequence[Floats], long: Floats) -> list[Row]:
@@ -232,7 +233,7 @@ def bias_study(config: BiasConfig, done: Sequence[Done]) -> Study:
         "Fifty walks with biased sensors",
         f"The same {config.walks} walks with noise at scale 1 and a constant error of 0.1 % of the span"
         " (accelerometer 0.0981 m/s², magnetometer 2.4 mG) on every axis; the gyro's as measured. Errors are"
-        " estimate less truth.",
+        " estimate less truth, as in Table 11.",
         asdict(config),
         (*rows, *_bias_in_words(judge, config, chosen, found[-1])),
         (_ends_plot("Fig. 85 (and 13): where the walks end", chosen, list(CASES.values())),

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from playwright.sync_api import Browser
 
-from app.outputs.report import number, report
+from app.outputs.report import number, number_beside, report
 from app.shell.study import names_of, study
 from tests.studies.doubles import a_study
 
@@ -24,10 +25,26 @@ def test_words_never_become_markup() -> None:
 
 
 @pytest.mark.parametrize(("value", "text"), [
-    (1.23456, "1.235"), (-0.5, "−0.5"), (123456.0, "123456"), (1.5e-13, "1.5 × 10^−13"),
+    (1.23456, "1.235"), (-0.5, "−0.5"), (123456.0, "123456"), (1.5e-13, "1.5 × 10⁻¹³"),
 ])  # fmt: skip
 def test_numbers_for_people(value: float, text: str) -> None:
     assert number(value) == text
+
+
+@pytest.mark.parametrize(("printed", "value", "text"), [
+    ("2.3215", 2.3, "2.3000"), ("286", 286.0, "286"), ("0.0006", 1.234e-5, "1.234 × 10⁻⁵"),
+    ("< 2", 1.0345, "1.034"), ("1.0", 12345.6, "12346"),
+])  # fmt: skip
+def test_ours_has_the_printed_figures_decimals(printed: str, value: float, text: str) -> None:
+    assert number_beside(printed, value) == text
+
+
+def test_a_reason_that_many_rows_share_is_said_once() -> None:
+    made = a_study()
+    page = report([replace(made, rows=made.rows[:1] * 3)], {})
+    assert page.count("<td class=why") == 1
+    assert 'rowspan="3"' in page
+    assert page.count('<td class="v') == 3
 
 
 def test_a_real_browser_shows_plots_verdicts_and_both_themes(

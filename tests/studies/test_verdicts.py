@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
 from app.studies.verdicts import Judge, last_place
+from app.studies.walks import _spread
 from app.studies.words import Row, Verdict
 
 JUDGE = Judge("test")
@@ -55,6 +57,13 @@ def test_bounds(got: float, verdict: Verdict) -> None:
 ])  # fmt: skip
 def test_chance_allows_three_standard_errors(got: float, verdict: Verdict) -> None:
     assert JUDGE.chance("x", "1.0", got, "m", error=0.1).verdict is verdict
+
+
+def test_fifty_walks_spreads_are_held_to_two() -> None:
+    """The same law at three would call 0.05 and 0.073 the same."""
+    walks = 0.073 * np.sqrt(49 / 50) * np.tile([-1.0, 1.0], 25)
+    assert _spread(JUDGE, "x", "0.05", walks).verdict is Verdict.NOT_REPRODUCED
+    assert _spread(JUDGE, "x", "0.06", walks).verdict is Verdict.REPRODUCED
 
 
 @pytest.mark.parametrize("row", [
