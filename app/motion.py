@@ -702,6 +702,13 @@ class Trust(NamedTuple):
     why: str  # empty where it is good
 
 
+class Compass(NamedTuple):
+    """Whether the magnetic field was the same at the last footprints, and if not, what of it changed."""
+
+    steady: bool
+    why: str  # empty where it is steady
+
+
 class FootView(NamedTuple):
     """One foot of one track, now."""
 
@@ -723,6 +730,7 @@ class FootView(NamedTuple):
     footprints: tuple[Footprint, ...]  # the newest few
     error_m: float | None  # distance to the simulator's truth
     trust: Trust | None = None  # None: the estimator does not know
+    compass: Compass | None = None  # None: no magnetic field, or too few footprints
 
 
 class GuideView(NamedTuple):

@@ -267,6 +267,7 @@ class FootTrack:
             footprints=self.footprints(),
             error_m=None if true is None else error_m(true, tracker.rows),
             trust=tracker.trust,
+            compass=tracker.compass.view,
         )
 
 

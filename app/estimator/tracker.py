@@ -8,6 +8,7 @@ import numpy as np
 
 from app.blocks import BLOCK, Blocks
 from app.estimator import state as s
+from app.estimator.compass import CompassWatch
 from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
@@ -15,6 +16,9 @@ from app.estimator.strides import Contact, lift_above_line, stride_to, turned
 from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, GyroBias, Samples, Stride, Trust
 from app.rotation import yaw_of
 from app.settings import Settings
+
+#: The magnetic field of a footprint is that of so many rows of its stance.
+STANCE_ROWS = 64
 
 
 class Checkpoint(NamedTuple):
@@ -55,6 +59,7 @@ class Tracker:
         self.strides: list[Stride] = []
         self.distance_m = self._base.distance_m
         self.segments: list[int] = []  # rows where a segment begins, but for the first
+        self.compass = CompassWatch()
         self.checkpoints: dict[int, Checkpoint] = {}  # before each block's first row
         self._events = np.zeros((self.method.events, EVENT_WIDTH))
 
@@ -119,9 +124,17 @@ class Tracker:
                 self.method.correct(rows, number, piece[place : place + len(rows)], event, self.state)
         if happened & s.STRIDE:
             self._add_stride(event)
+            self._look_at_field(samples, int(event[Event.CONTACT_ROW]), last)
         if happened & s.SEGMENT:
             self.segments.append(last - 1)
             self._contact = None
+            self.compass.forget()
+
+    def _look_at_field(self, samples: Blocks, first: int, last: int) -> None:
+        """The magnetic field while the foot stood, as far as these rows are in one block."""
+        *_, (rows, number) = self.rows.pieces(max(first, last - STANCE_ROWS, self.rows.start), last)
+        piece, place = samples.block(number)
+        self.compass.add(piece[place : place + len(rows)], rows)
 
     def _add_stride(self, event: Floats) -> None:
         lift = max(int(event[Event.LIFT_ROW]), self.rows.start)

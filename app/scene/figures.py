@@ -104,8 +104,17 @@ def _card(foot: FootView) -> str:
     grid = "".join(tile(*one) for one in tiles)
     return (
         f'<div class="ss-card ss-{foot.role.value}"><div class="ss-card-head"><span class="ss-dot"></span>'
-        f'{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class="ss-tiles">{grid}</div></div>'
+        f'{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class="ss-tiles">{grid}</div>'
+        f"{compass(foot)}</div>"
     )
+
+
+def compass(foot: FootView) -> str:
+    """Whether a magnetometer could be believed at the last footprints, and why not."""
+    if foot.compass is None:
+        return ""
+    word = "steady" if foot.compass.steady else f"not to be trusted: {words.plain(foot.compass.why)}"
+    return f'<div class="ss-note">Magnetic field {word}.</div>'
 
 
 def trust(foot: FootView) -> str:

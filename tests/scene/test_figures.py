@@ -5,7 +5,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.motion import Change, GaitPhase, Link, Snapshot, Status, Trust
+from app.motion import Change, Compass, GaitPhase, Link, Snapshot, Status, Trust
 from app.scene import figures, words
 from app.settings import Settings
 from tests.scene import fakes
@@ -123,3 +123,13 @@ def test_trust_is_a_distance_a_word_and_its_reason_or_nothing() -> None:
     assert "± 1.23 m" in text
     assert "lost: no stance for 3 s" in text
     assert ":" not in figures.trust(walker._replace(trust=lost._replace(word="good", why="")))
+
+
+def test_a_field_that_strays_is_said_with_what_of_it() -> None:
+    snapshot = fakes.snapshot(9.7)
+    (foot,) = snapshot.main.feet
+    assert "Magnetic field" not in figures.feet(snapshot)
+    assert "Magnetic field steady" in figures.compass(foot._replace(compass=Compass(True, "")))
+    assert "strays by 12 %" in figures.compass(
+        foot._replace(compass=Compass(False, "its dip strays by 12 %"))
+    )
