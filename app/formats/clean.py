@@ -5,14 +5,17 @@ The same rule as a live intake's. Gaps stay gaps. A magnetometer that reads noth
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from app.formats.raw import NO_STAMP, RawFoot
-from app.motion import SAMPLE_WIDTH, Floats, InputError, Ints, Samples, role_of
+from app.motion import GAP_NS, SAMPLE_WIDTH, Floats, InputError, Ints, Samples, role_of
 
 NOT_FINITE = "not a finite number"
 REPEATED = "repeated time"
 BACKWARD = "time went backward"
+LEAPT = "a time far off"
 
 _LONGEST_NS = 2**53  # 104 days: beyond it ELAPSED_NS would not be exact
 _MOST = 1e6  # m/s², rad/s or µT; no sensor reads that, and its square would spoil every sum
@@ -20,7 +23,9 @@ _MOST = 1e6  # m/s², rad/s or µT; no sensor reads that, and its square would s
 
 def clean(raw: RawFoot) -> Samples:
     """The rows that count, and how many were dropped for which reason; ``InputError`` if none is left."""
+    raw, lone = without_lone_leaps(raw)
     rows, dropped = countable(raw)
+    dropped = {LEAPT: lone} | dropped if lone else dropped
     if not len(rows):
         raise InputError(f"{raw.sensor}: none of {len(raw.stamps_ns)} rows is finite, expected samples")
     stamps_ns = raw.stamps_ns[rows]
@@ -32,6 +37,26 @@ def clean(raw: RawFoot) -> Samples:
         saturation=np.zeros(len(rows), np.uint16),
         dropped=dropped,
     )
+
+
+def without_lone_leaps(raw: RawFoot) -> tuple[RawFoot, int]:
+    """Without rows whose stamp leaps ahead by a gap while the next one goes on before it, and how many.
+
+    Such a stamp would make all that follow it late. Rows that are no use anyway are left as they are.
+    """
+    at = np.flatnonzero(raw.stamps_ns != NO_STAMP)
+    stamps = raw.stamps_ns[at].astype(np.float64)
+    if len(stamps) < 3:
+        return raw, 0
+    before, after = np.r_[-np.inf, stamps[:-1]], np.r_[stamps[1:], np.inf]
+    before[0] = after[0] - 1.0  # the first leapt if the second is a gap before it
+    lone = (stamps - before > GAP_NS) & (stamps - after > GAP_NS) & (after > before)
+    keep = np.ones(len(raw.stamps_ns), np.bool_)
+    keep[at[lone]] = False
+    field = None if raw.field is None else raw.field[keep]
+    return replace(
+        raw, stamps_ns=raw.stamps_ns[keep], force=raw.force[keep], rate=raw.rate[keep], field=field
+    ), int(lone.sum())
 
 
 def countable(raw: RawFoot) -> tuple[Ints, dict[str, int]]:

@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.formats.clean import BACKWARD, NOT_FINITE, REPEATED, clean
+from app.formats.clean import BACKWARD, LEAPT, NOT_FINITE, REPEATED, clean, countable
 from app.formats.raw import NO_STAMP, RawFoot
 from app.motion import InputError
 
@@ -43,16 +43,34 @@ def test_the_same_rows_as_the_live_rule(stamps: list[int], data: st.DataObject) 
     usable = [s != NO_STAMP and f == -9.8 for s, f in zip(stamps, force, strict=True)]
     first = next((s for s, fine in zip(stamps, usable, strict=True) if fine), 0)
     usable = [fine and s - first < 2**53 for s, fine in zip(stamps, usable, strict=True)]
-    kept = one_by_one(stamps, usable)
-    if not kept:
-        with pytest.raises(InputError):
-            clean(raw(stamps, force))
+    rows, dropped = countable(raw(stamps, force))
+    assert rows.tolist() == one_by_one(stamps, usable)
+    assert len(rows) + sum(dropped.values()) == len(stamps)
+
+
+@given(STAMPS)
+def test_cleaned_stamps_increase_and_every_row_is_counted(stamps: list[int]) -> None:
+    try:
+        samples = clean(raw(stamps))
+    except InputError:
+        assert all(s == NO_STAMP for s in stamps) or len(stamps) > 2
         return
-    samples = clean(raw(stamps, force))
-    assert samples.device_ns + samples.matrix[:, 0].astype(int) == pytest.approx(
-        [stamps[i] for i in kept], abs=0
-    )
+    assert (np.diff(samples.matrix[:, 0]) > 0).all()
     assert len(samples) + sum(samples.dropped.values()) == len(stamps)
+
+
+@pytest.mark.parametrize("at", [0, 1, 57, 98])
+def test_a_lone_wild_stamp_costs_its_own_row_only(at: int) -> None:
+    stamps = [i * 10_000_000 for i in range(100)]
+    wild = [*stamps[:at], stamps[at] + 10**15, *stamps[at + 1 :]]
+    samples = clean(raw(wild))
+    assert samples.dropped == {LEAPT: 1}
+    assert (samples.device_ns + samples.matrix[:, 0]).tolist() == stamps[:at] + stamps[at + 1 :]
+
+
+def test_a_clock_that_was_really_set_ahead_keeps_every_row() -> None:
+    stamps = [i * 10_000_000 + (10**12 if i > 50 else 0) for i in range(100)]
+    assert len(clean(raw(stamps))) == 100
 
 
 def test_each_reason_is_counted() -> None:

@@ -22,6 +22,10 @@ from app.motion import GAP_NS, Sample
 MOST_SENSORS = 64
 _KEPT_SESSIONS = 16
 _MANY = 200  # repeated in a row: the sender hardly means it
+#: A stamp that runs ahead of the host's clock by more is believed when the next one follows it.
+LEAP_NS = 60_000_000_000
+#: A sender's clock that fell back is believed after so many stamps that follow each other.
+_FELL_BACK = 8
 
 
 @dataclass
@@ -35,6 +39,8 @@ class _Stream:
     sender_ns: int = -1  # its newest stamp
     last: Sample | None = None
     repeated: int = 0  # in a row
+    odd_ns: int = -1  # the last stamp that did not fit
+    odd: int = 0  # of those that follow each other, how many
     over: deque[int] = field(default_factory=lambda: deque(maxlen=_KEPT_SESSIONS))  # sessions before
 
 
@@ -101,7 +107,7 @@ class Intake:
 
     def _begin_anew(self, stream: _Stream, session: int, first: Sample, host_ns: int) -> None:
         stream.over.append(stream.session)
-        stream.session, stream.next, stream.sender_ns = session, first.seq, -1
+        stream.session, stream.next, stream.sender_ns, stream.odd = session, first.seq, -1, 0
         if stream.last is not None:
             passed_ns = max(host_ns - stream.last.host_ns, GAP_NS + 1)
             stream.clock_ns = stream.last.device_ns + passed_ns - self._stamp(first)
@@ -115,7 +121,7 @@ class Intake:
             stream.next = samples[-1].seq + 1
         made = []
         for sample in samples[known:]:
-            ready = self._ready(stream, name, sample) if sample.device_ns > stream.sender_ns else None
+            ready = self._ready(stream, name, sample) if _fits(stream, sample) else None
             if ready is None:
                 self.counters.dropped += 1
                 continue
@@ -163,3 +169,23 @@ class Intake:
     def _note(self, sentence: str) -> None:
         if sentence not in self.notes:
             self.notes.append(sentence)
+
+
+def _fits(stream: _Stream, sample: Sample) -> bool:
+    """Whether its stamp goes on from the newest. A lone wild one is refused and changes nothing.
+
+    A clock that was really set ahead leaves a gap; one that was really set back goes on behind a gap.
+    """
+    step_ns, last = sample.device_ns - stream.sender_ns, stream.last
+    host_ns = max(sample.host_ns - last.host_ns, 0) if last else 0
+    if last is None or stream.sender_ns < 0 or 0 < step_ns <= host_ns + LEAP_NS:
+        stream.odd = 0
+        return sample.device_ns > stream.sender_ns
+    follows = stream.odd > 0 and 0 < sample.device_ns - stream.odd_ns <= GAP_NS
+    stream.odd, stream.odd_ns = (stream.odd + 1 if follows else 1), sample.device_ns
+    if stream.odd < (2 if step_ns > 0 else _FELL_BACK):
+        return False
+    if step_ns <= 0:
+        stream.clock_ns = last.device_ns + max(host_ns, GAP_NS + 1) - sample.device_ns
+    stream.odd = 0
+    return True

@@ -138,3 +138,35 @@ def test_a_sender_that_forgets_to_choose_a_session_is_told_of() -> None:
         take(box, 1, [sample])
     assert any("new session" in note for note in box.notes)
     assert len(box.notes) == 1
+
+
+def stamped(stamps: list[int]) -> list[tuple[Sample, int]]:
+    """Samples that come every 10 ms, with these stamps, and when they come."""
+    walk = samples(len(stamps))
+    return [
+        (s._replace(device_ns=stamp), i * 10 * MS)
+        for i, (s, stamp) in enumerate(zip(walk, stamps, strict=True))
+    ]
+
+
+def taken_one_by_one(sent: list[tuple[Sample, int]]) -> list[Sample]:
+    box = Intake()
+    return [got for sample, host_ns in sent for got in take(box, 1, [sample], host_ns)]
+
+
+def test_a_lone_wild_stamp_costs_its_own_sample_only() -> None:
+    stamps = [(i + 1) * 10 * MS for i in range(100)]
+    for wild in (10**18, 3600 * 10**9, 1):
+        got = taken_one_by_one(stamped([*stamps[:50], wild, *stamps[51:]]))
+        assert [s.device_ns for s in got] == stamps[:50] + stamps[51:]
+
+
+def test_a_clock_that_is_set_goes_on_behind_a_gap() -> None:
+    for shift in (10**13, -400 * MS):
+        stamps = [(i + 1) * 10 * MS + (shift if i >= 50 else 0) for i in range(100)]
+        got = taken_one_by_one(stamped(stamps))
+        steps = [b.device_ns - a.device_ns for a, b in pairwise(got)]
+        assert len(got) >= 92
+        assert all(step > 0 for step in steps)
+        assert sum(step > GAP_NS for step in steps) == 1
+        assert steps.count(10 * MS) == len(steps) - 1
