@@ -3,60 +3,20 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
-from typing import Any
+from dataclasses import dataclass, fields
 
-Value = float | bool | str
-_TOO_LARGE = 1e300  # a whole number can be past every float
+from app.limits import Limit, Limited, Value, setting
 
 
 @dataclass(frozen=True)
-class Limit:
-    """What a setting may be, and how a person is told. ``safe`` is the slider's range."""
-
-    label: str
-    symbol: str
-    unit: str
-    sentence: str
-    low: float = 0.0
-    high: float = 1.0
-    safe: tuple[float, float] = (0.0, 1.0)
-    step: float = 0.01
-    choices: tuple[str, ...] = ()
-    only: str = ""  # the estimator that reads it; empty: every one
-
-
-def _setting(default: Value, limit: Limit) -> Any:
-    return field(default=default, metadata={"limit": limit})
-
-
-def _checked(name: str, value: object, default: object, limit: Limit) -> Value:
-    if isinstance(default, bool):
-        if not isinstance(value, bool):
-            raise ValueError(f"{name} = {value!r}: expected true or false")
-        return value
-    if isinstance(default, str):
-        if value not in limit.choices:
-            raise ValueError(f"{name} = {value!r}: expected one of {', '.join(limit.choices)}")
-        return str(value)
-    if isinstance(value, bool) or not isinstance(value, int | float) or not abs(value) < _TOO_LARGE:
-        raise ValueError(f"{name} = {value!r}: expected a number")
-    if not limit.low <= value <= limit.high:
-        span = f"{limit.low:g} to {limit.high:g} {limit.unit}".rstrip()
-        raise ValueError(f"{name} = {value:g}: expected {span}")
-    return float(value)
-
-
-@dataclass(frozen=True)
-class Settings:
-    """One track's settings. Out-of-range, unknown or non-finite values raise ``ValueError``.
+class Settings(Limited):
+    """One track's settings.
 
     Values are SI and radians. The defaults are the built-in profile ``papers`` (2012 paper, Table
     II; thresholds: see docs/method.md).
     """
 
-    estimator: str = _setting(
+    estimator: str = setting(
         "papers",
         Limit(
             "Estimator", "", "",
@@ -65,7 +25,7 @@ class Settings:
             choices=("papers", "kalman"),
         ),
     )  # fmt: skip
-    gain_stance: float = _setting(
+    gain_stance: float = setting(
         1.05,
         Limit(
             "Stance gain", "k_s", "1/s",
@@ -75,7 +35,7 @@ class Settings:
             only="papers",
         ),
     )  # fmt: skip
-    gain_swing: float = _setting(
+    gain_swing: float = setting(
         0.0,
         Limit(
             "Swing gain", "k_d", "1/s",
@@ -85,7 +45,7 @@ class Settings:
             only="papers",
         ),
     )  # fmt: skip
-    threshold_radps: float = _setting(
+    threshold_radps: float = setting(
         1.0,
         Limit(
             "Rate threshold", "Ω_th", "rad/s",
@@ -94,7 +54,7 @@ class Settings:
             0.01, 20.0, (0.1, 4.0), 0.01,
         ),
     )  # fmt: skip
-    min_duration_s: float = _setting(
+    min_duration_s: float = setting(
         0.06,
         Limit(
             "Minimum duration", "Γ", "s",
@@ -103,7 +63,7 @@ class Settings:
             0.0, 1.0, (0.0, 0.3), 0.005,
         ),
     )  # fmt: skip
-    zero_velocity: bool = _setting(
+    zero_velocity: bool = setting(
         True,
         Limit(
             "Zero-velocity update", "", "",
@@ -111,7 +71,7 @@ class Settings:
             " ever made stays, and position runs away.",
         ),
     )  # fmt: skip
-    magnetometer: bool = _setting(
+    magnetometer: bool = setting(
         False,
         Limit(
             "Magnetometer", "", "",
@@ -119,14 +79,14 @@ class Settings:
             " often straighter.",
         ),
     )  # fmt: skip
-    gravity_from_rest: bool = _setting(
+    gravity_from_rest: bool = setting(
         True,
         Limit(
             "Gravity from rest", "", "",
             "Take gravity as the sensor reads it in the still start: no sensor is scaled exactly.",
         ),
     )  # fmt: skip
-    gravity_mps2: float = _setting(
+    gravity_mps2: float = setting(
         9.80665,
         Limit(
             "Gravity", "g", "m/s²",
@@ -135,14 +95,14 @@ class Settings:
             8.0, 11.5, (9.5, 10.0), 0.001,
         ),
     )  # fmt: skip
-    bias_from_rest: bool = _setting(
+    bias_from_rest: bool = setting(
         True,
         Limit(
             "Gyro bias from rest", "", "",
             "Subtract the rate the gyro shows in the still start, if it was truly still.",
         ),
     )  # fmt: skip
-    still_window_s: float = _setting(
+    still_window_s: float = setting(
         0.5,
         Limit(
             "Still start", "", "s",
@@ -150,7 +110,7 @@ class Settings:
             0.05, 10.0, (0.1, 3.0), 0.05,
         ),
     )  # fmt: skip
-    start_heading_rad: float = _setting(
+    start_heading_rad: float = setting(
         0.0,
         Limit(
             "Start heading", "ψ_0", "rad",
@@ -160,7 +120,7 @@ class Settings:
         ),
     )  # fmt: skip
 
-    detector: str = _setting(
+    detector: str = setting(
         "adaptive",
         Limit(
             "Stance detector", "", "",
@@ -170,7 +130,7 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
-    gait_factor: float = _setting(
+    gait_factor: float = setting(
         30.0,
         Limit(
             "Stance share", "", "s²/rad²",
@@ -180,7 +140,7 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
-    still_statistic: float = _setting(
+    still_statistic: float = setting(
         100.0,
         Limit(
             "Stance threshold", "T", "σ²",
@@ -190,7 +150,7 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
-    sensor_height_m: float = _setting(
+    sensor_height_m: float = setting(
         0.07,
         Limit(
             "Sensor height", "h", "m",
@@ -200,7 +160,7 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
-    gyro_range_radps: float = _setting(
+    gyro_range_radps: float = setting(
         0.0,
         Limit(
             "Gyro range", "", "rad/s",
@@ -210,7 +170,7 @@ class Settings:
         ),
     )  # fmt: skip
 
-    remembered_bias: bool = _setting(
+    remembered_bias: bool = setting(
         True,
         Limit(
             "Remembered gyro bias", "", "",
@@ -219,7 +179,7 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
-    feet_apart_m: float = _setting(
+    feet_apart_m: float = setting(
         1.0,
         Limit(
             "Feet at most apart", "d", "m",
@@ -229,7 +189,7 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
-    hindsight: bool = _setting(
+    hindsight: bool = setting(
         False,
         Limit(
             "In hindsight", "", "",
@@ -238,19 +198,6 @@ class Settings:
             only="kalman",
         ),
     )  # fmt: skip
-
-    def __post_init__(self) -> None:
-        for f in fields(self):
-            value = _checked(f.name, getattr(self, f.name), f.default, f.metadata["limit"])
-            object.__setattr__(self, f.name, value)
-
-    def with_changes(self, changes: Mapping[str, Value]) -> Settings:
-        """These settings with some changed; an unknown key or a bad value raises ``ValueError``."""
-        known = {f.name for f in fields(self)}
-        for key in changes:
-            if key not in known:
-                raise ValueError(f"unknown setting {key!r}: expected one of {', '.join(sorted(known))}")
-        return replace(self, **changes)  # type: ignore[arg-type]
 
     def differences(self, other: Settings) -> str:
         """In words, what changes from these settings to ``other``: ``gain_stance 1.05 → 2``."""
@@ -261,7 +208,7 @@ class Settings:
         )
 
 
-LIMITS: dict[str, Limit] = {f.name: f.metadata["limit"] for f in fields(Settings)}
+LIMITS = Settings.limits()
 BUILT_IN: dict[str, Settings] = {
     "papers": Settings(),
     "default": Settings(estimator="kalman"),

@@ -25,6 +25,7 @@ HEART = {
     "damage",
     "blocks",
     "warm",
+    "limits",
     "motion",
     "settings",
     "rotation",

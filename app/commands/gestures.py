@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 
-from app.commands.shared import Commands, add_json
+from app.commands.shared import Commands, add_json, answer
 
 
 def add(commands: Commands) -> None:
@@ -21,9 +20,4 @@ def run(options: argparse.Namespace) -> int:
     from app.shell import batch
 
     done = batch.decode_gestures(options.recording, options.decoder)
-    if options.json:
-        print(json.dumps(batch.gestures_summary(done)))
-        return 0
-    for line in batch.gestures_lines(done):
-        print(line)
-    return 0
+    return answer(options.json, batch.gestures_summary(done), batch.gestures_lines(done))

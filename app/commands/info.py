@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import argparse
-import json
 
-from app.commands.shared import Commands, add_json
+from app.commands.shared import Commands, add_json, answer
 
 
 def add(commands: Commands) -> None:
@@ -20,6 +19,4 @@ def run(options: argparse.Namespace) -> int:
     from app.shell import library
 
     told = library.info(options.file)
-    for line in [json.dumps(told)] if options.json else library.lines(told):
-        print(line)
-    return 0
+    return answer(options.json, told, library.lines(told))

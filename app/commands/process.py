@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from app.commands.shared import Commands, add_json, add_settings, settings_of
+from app.commands.shared import Commands, add_json, add_settings, answer, settings_of, wrote
 from app.commands.workers import add_workers, bar, jobs_of
 
 if TYPE_CHECKING:
@@ -39,14 +38,7 @@ def run(options: argparse.Namespace) -> int:
         return run_folder(options, spec)
     done = batch.process(options.recording, settings_of(options), options.bias_from)
     files = batch.write(done, options.out) if options.out else []
-    if options.json:
-        print(json.dumps(batch.summary(done)))
-        return 0
-    for line in batch.lines(done):
-        print(line)
-    for path in files:
-        print(f"wrote {path}")
-    return 0
+    return answer(options.json, batch.summary(done), [*batch.lines(done), *wrote(files)])
 
 
 def run_folder(options: argparse.Namespace, spec: Spec) -> int:
@@ -56,9 +48,4 @@ def run_folder(options: argparse.Namespace, spec: Spec) -> int:
     done = batch.process_folder(
         spec, settings_of(options), options.out, jobs_of(options), options.cluster, bar
     )
-    if options.json:
-        print(json.dumps(batch.folder_summary(done)))
-        return 0
-    for line in batch.folder_lines(done):
-        print(line)
-    return 0
+    return answer(options.json, batch.folder_summary(done), batch.folder_lines(done))

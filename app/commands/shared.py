@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import argparse
 import datetime
+import json
 import logging
 import os
 import sys
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import NoReturn, Protocol
 
@@ -118,6 +120,18 @@ def _certificate(options: argparse.Namespace) -> Certificate | None:
         now = datetime.datetime.now(datetime.UTC)
         return selfmade.made(profiles.folder().parent / "tls", everything(options.host), now)
     return None if chain is None else Certificate(chain, key)
+
+
+def answer(json_wanted: bool, told: Mapping[str, object], lines: Iterable[str]) -> int:
+    """What a command found, as one JSON object or as lines for a person; the exit code."""
+    for line in [json.dumps(told)] if json_wanted else lines:
+        print(line)
+    return 0
+
+
+def wrote(files: Iterable[Path]) -> list[str]:
+    """Which files were written."""
+    return [f"wrote {path}" for path in files]
 
 
 def tell(line: str) -> None:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-import json
 from pathlib import Path
 
-from app.commands.shared import Commands, add_json
+from app.commands.shared import Commands, add_json, answer, wrote
 from app.commands.workers import add_workers, bar, jobs_of
 
 #: Where the report goes if nobody says where.
@@ -40,11 +39,4 @@ def run(options: argparse.Namespace) -> int:
     )
     out = options.out or (None if options.json else USUAL_OUT)
     files = study.write(outcome, out) if out else []
-    if options.json:
-        print(json.dumps(study.summary(outcome)))
-        return 0
-    for line in study.lines(outcome):
-        print(line)
-    for path in files:
-        print(f"wrote {path}")
-    return 0
+    return answer(options.json, study.summary(outcome), [*study.lines(outcome), *wrote(files)])

@@ -6,10 +6,11 @@ import math
 from collections.abc import Callable
 from dataclasses import fields
 
+from app.limits import Limit, Value
 from app.motion import FootView, GaitPhase, Link, OwnView, Role, Snapshot, Status
 from app.scene import words
 from app.scene.guard import drawable
-from app.settings import LIMITS, Limit, Settings, Value
+from app.settings import LIMITS, Settings
 
 STALE_AFTER_S = 0.5
 FEET = {Role.LEFT: "Left foot", Role.RIGHT: "Right foot", Role.FOOT: "Foot", Role.OTHER: "Sensor"}

@@ -11,12 +11,13 @@ from dataclasses import fields
 from pathlib import Path
 from typing import NamedTuple
 
+from app.limits import Limit, Value
 from app.motion import Snapshot, Status
 from app.scene import figures, swinging, words
 from app.scene.head import style
 from app.scene.lab import notice
 from app.scene.share import film
-from app.settings import LIMITS, Limit, Settings, Value
+from app.settings import LIMITS, Settings
 from app.simulate import lab
 
 LAYOUT = Path(__file__).with_name("sheet.css")

@@ -6,9 +6,10 @@ import math
 from collections.abc import Callable
 from typing import Any
 
+from app.limits import Limit, Value
 from app.motion import GuiRule, ReplaceCandidate, SetCandidate, Snapshot
 from app.scene.controls import Controls, Input
-from app.settings import BUILT_IN, LIMITS, Limit, Value, is_read
+from app.settings import BUILT_IN, LIMITS, is_read
 
 FIRST = (
     "estimator", "gain_stance", "gain_swing", "threshold_radps", "min_duration_s", "gait_factor",

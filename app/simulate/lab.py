@@ -4,25 +4,22 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import dataclass
 from typing import Any, NamedTuple
 
 import numpy as np
 
+from app.limits import Limit, Limited, Value, setting
 from app.motion import InputError, Sample, SetErrors, Vector
-from app.settings import Limit, Settings, Value
+from app.settings import Settings
 from app.simulate.sensors import STANDARD_GRAVITY, TABLE_II_NOISE
 
 
-def _error(default: float, limit: Limit) -> Any:
-    return field(default=default, metadata={"limit": limit})
-
-
 @dataclass(frozen=True)
-class LabErrors:
-    """What is wrong with the sensor. The defaults are a perfect one; out of range is ``ValueError``."""
+class LabErrors(Limited):
+    """What is wrong with the sensor. The defaults are a perfect one."""
 
-    force_bias_mps2: float = _error(
+    force_bias_mps2: float = setting(
         0.0,
         Limit(
             "Accelerometer bias", "", "m/s²",
@@ -30,7 +27,7 @@ class LabErrors:
             -2.0, 2.0, (-0.5, 0.5), 0.01,
         ),
     )  # fmt: skip
-    rate_bias_dps: float = _error(
+    rate_bias_dps: float = setting(
         0.0,
         Limit(
             "Gyro bias", "", "°/s",
@@ -38,7 +35,7 @@ class LabErrors:
             -10.0, 10.0, (-2.0, 2.0), 0.05,
         ),
     )  # fmt: skip
-    noise: float = _error(
+    noise: float = setting(
         0.0,
         Limit(
             "Noise", "", "× Table II",
@@ -46,7 +43,7 @@ class LabErrors:
             0.0, 100.0, (0.0, 20.0), 0.5,
         ),
     )  # fmt: skip
-    range_g: float = _error(
+    range_g: float = setting(
         20.0,
         Limit(
             "Accelerometer range", "", "g",
@@ -54,7 +51,7 @@ class LabErrors:
             1.0, 100.0, (1.5, 20.0), 0.1,
         ),
     )  # fmt: skip
-    lost_percent: float = _error(
+    lost_percent: float = setting(
         0.0,
         Limit(
             "Lost samples", "", "%",
@@ -62,7 +59,7 @@ class LabErrors:
             0.0, 90.0, (0.0, 50.0), 1.0,
         ),
     )  # fmt: skip
-    field_bias_ut: float = _error(
+    field_bias_ut: float = setting(
         0.0,
         Limit(
             "Magnetic disturbance", "", "µT",
@@ -72,23 +69,8 @@ class LabErrors:
         ),
     )  # fmt: skip
 
-    def __post_init__(self) -> None:
-        for f in fields(self):
-            value, limit = getattr(self, f.name), f.metadata["limit"]
-            if not limit.low <= value <= limit.high:
-                raise ValueError(
-                    f"{f.name} = {value!r}: expected {limit.low:g} to {limit.high:g} {limit.unit}"
-                )
 
-    def with_changes(self, changes: Mapping[str, float]) -> LabErrors:
-        """These errors with some changed; an unknown name or a bad value raises ``ValueError``."""
-        unknown = sorted(set(changes) - set(LIMITS))
-        if unknown:
-            raise ValueError(f"unknown error {unknown[0]!r}: expected one of {', '.join(LIMITS)}")
-        return replace(self, **changes)
-
-
-LIMITS: dict[str, Limit] = {f.name: f.metadata["limit"] for f in fields(LabErrors)}
+LIMITS = LabErrors.limits()
 PERFECT = LabErrors()
 
 
