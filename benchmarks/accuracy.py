@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from app.estimator.feet import BESIDE_M
 from app.estimator.tracker import track
 from app.settings import BUILT_IN, Settings
+from app.shell import batch
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec
 from benchmarks import honesty, kinds, measured, mocap, peers
@@ -32,6 +34,9 @@ def accuracy() -> Section:
     for profile, wanted in WANTED.items():
         yield from walked(profile, BUILT_IN[profile], wanted)
         yield from gait(profile, BUILT_IN[profile])
+        yield from loops(profile, BUILT_IN[profile])
+    for profile in ("default", "hindsight"):
+        yield from together(profile, BUILT_IN[profile])
     covered = honesty.coverage(BUILT_IN["default"])
     yield Figure(
         "default: Vicon room: truth inside the 95 % ellipse", covered, "%", 90.0, True, "wanted: 90 to 99"
@@ -59,6 +64,33 @@ def gait(profile: str, settings: Settings) -> Section:
         share = 100.0 * both / max(whole, 1)
         what = f"{profile}: strides that insoles feel, {name}"
         yield Figure(what, share, "%", wanted, True, f"{both} of {whole}")
+
+
+#: A walk of the loops' sensor, on another occasion, that starts still.
+TAUGHT_BY = "hallway_gcp/SensorConnectData_31.csv"
+
+
+def loops(profile: str, settings: Settings) -> Section:
+    """The corridor loops together, with no bias given and with one remembered from another recording."""
+    if settings.estimator != "kalman":
+        return
+    for how, taught, wanted in (("no bias given", None, 1.5), (f"bias of {TAUGHT_BY}", TAUGHT_BY, 0.6)):
+        percents = [foot["closure_pct"] for _, foot in measured.closures("hallway_loops", settings, taught)]
+        note = ", ".join(f"{percent:.2f}" for percent in percents)
+        mean = float(np.mean(percents))
+        yield Figure(f"{profile}: hallway_loops, {how}: closure, mean", mean, "%", wanted, note=note)
+
+
+def together(profile: str, settings: Settings) -> Section:
+    """Two feet of one walk: how far apart they come, side by side at the start."""
+    path = measured.DATA / "gaitmap_feet" / "imu_sample.csv"
+    done = batch.process(str(path), settings)
+    left, right = (done.trackers[name].rows for name in ("left", "right"))
+    count = min(left.end, right.end)
+    away = right.table(0, count)[:, :2] + np.array([0.0, BESIDE_M]) - left.table(0, count)[:, :2]
+    note = "linked" if done.linked else "not linked"
+    far = float(np.hypot(away[:, 0], away[:, 1]).max())
+    yield Figure(f"{profile}: gaitmap_feet imu_sample: feet at most apart", far, "m", note=note)
 
 
 def beside(name: str, peer: measured.How) -> Section:

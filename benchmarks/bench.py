@@ -1,6 +1,6 @@
 """Benchmarks: ``make bench``: every figure measured beside the one wanted, and beside the peers.
 
-``python benchmarks/bench.py [SECTION …] [--json]``; without a section, all of them. A missed figure is
+``python benchmarks/bench.py [SECTION …] [--json] [--picture SVG]``; without a section, all of them. A missed figure is
 told, never an error: another machine, another load. Progress goes to standard error.
 """
 
@@ -15,7 +15,20 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import accuracy, cost, decoders, door, gestures, ghost, page, recordings, start, studies, town
+from benchmarks import (
+    accuracy,
+    cost,
+    decoders,
+    door,
+    gestures,
+    ghost,
+    page,
+    picture,
+    recordings,
+    start,
+    studies,
+    town,
+)
 from benchmarks.figures import Figure, Section, table
 
 SECTIONS = {
@@ -39,6 +52,7 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="bench.py", description="Figures measured beside those wanted.")
     parser.add_argument("sections", nargs="*", metavar="SECTION", help=", ".join(SECTIONS))
     parser.add_argument("--json", action="store_true", help="one JSON object instead of the tables")
+    parser.add_argument("--picture", metavar="SVG", type=Path, help="draw the accuracy section there")
     options = parser.parse_args()
     unknown = [name for name in options.sections if name not in SECTIONS]
     if unknown:
@@ -49,6 +63,8 @@ def main() -> int:
         found[name] = measure(name, SECTIONS[name]())
         if not options.json:
             print("\n".join(table(name, found[name])), flush=True)
+    if options.picture and "accuracy" in found:
+        options.picture.write_text(picture.drawn(found["accuracy"]), "utf-8")
     told = {name: [f._asdict() | {"verdict": f.verdict} for f in figures] for name, figures in found.items()}
     if options.json:
         print(json.dumps(told))

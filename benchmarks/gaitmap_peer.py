@@ -1,4 +1,4 @@
-"""Benchmarks: run by gaitmap's own Python: one foot's samples in, gaitmap's trajectory out."""
+"""Benchmarks: run by gaitmap's own Python: one foot's samples in, gaitmap's trajectory out, over and over."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from gaitmap.trajectory_reconstruction import RtsKalman
 from scipy.spatial.transform import Rotation
 
 
-def main(given: str, made: str) -> None:
+def estimate(given: str, made: str) -> None:
     """Level by the first half second, as gaitmap wants it, and its ``RtsKalman`` as it comes."""
     data = np.load(given)
     t_s, force, rate = data["t_s"], data["force"], data["rate"]
@@ -25,5 +25,12 @@ def main(given: str, made: str) -> None:
     np.save(made, found.position_.to_numpy()[1:, -3:])
 
 
+def main() -> None:
+    """Two paths a line; a line back when it is done. Its compiler takes a minute, so one process does all."""
+    for line in sys.stdin:
+        estimate(*line.split())
+        print("done", flush=True)
+
+
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main()

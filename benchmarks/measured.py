@@ -104,11 +104,16 @@ def corridor(settings: How) -> Iterator[Score]:
         )
 
 
-def closures(folder: str, settings: Settings) -> Iterator[tuple[str, dict[str, Any]]]:
-    """Name and summary of every foot of every recording that ends where it began."""
+def closures(
+    folder: str, settings: Settings, taught_by: str | None = None
+) -> Iterator[tuple[str, dict[str, Any]]]:
+    """Name and summary of every foot of every recording that ends where it began.
+
+    ``taught_by`` is another recording of the same sensor, whose gyro bias they begin with.
+    """
     for path in sorted((DATA / folder).glob("*.csv")):
         try:
-            done = batch.process(str(path), settings)
+            done = batch.process(str(path), settings, taught_by and str(DATA / taught_by))
         except ValueError:  # tables of truth lie beside the recordings
             continue
         for foot, tracker in done.trackers.items():

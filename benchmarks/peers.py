@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import functools
 import os
 import subprocess
 import tempfile
 from pathlib import Path
+from typing import IO
 
 import imufusion
 import numpy as np
@@ -65,12 +67,27 @@ def has_gaitmap() -> bool:
     return GAITMAP.is_file()
 
 
+@functools.cache
+def gaitmap() -> tuple[IO[str], IO[str]]:
+    """Its process, which ends with this one: where to say what, and where it answers."""
+    process = subprocess.Popen(
+        [GAITMAP, SCRIPT], stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True
+    )
+    assert process.stdin is not None
+    assert process.stdout is not None
+    return process.stdin, process.stdout
+
+
 def with_gaitmap(samples: Samples) -> Floats:
     """Positions [n, 3]: gaitmap's Kalman smoother over the whole walk, in its own environment."""
     t_s, force, rate = x_forward(samples)
     with tempfile.TemporaryDirectory() as folder:
         given, made = Path(folder) / "in.npz", Path(folder) / "out.npy"
         np.savez(given, t_s=t_s, force=force, rate=rate)
-        subprocess.run([GAITMAP, SCRIPT, given, made], check=True, capture_output=True)
+        said, told = gaitmap()
+        said.write(f"{given} {made}\n")
+        said.flush()
+        if told.readline() != "done\n":
+            raise RuntimeError(f"gaitmap failed on {samples.sensor}: run {SCRIPT} by hand")
         found: Floats = np.load(made)
     return found[-len(t_s) :]
