@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.settings import BUILT_IN, LIMITS, Settings, Value, parse
+from app.limits import Value
+from app.settings import BUILT_IN, LIMITS, Settings, parse
 
 PAPERS = BUILT_IN["papers"]
 DEFAULTS: dict[str, Value] = {f.name: getattr(PAPERS, f.name) for f in fields(Settings)}
