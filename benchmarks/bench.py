@@ -1,7 +1,7 @@
 """Benchmarks: ``make bench``: every figure measured beside the one wanted, and beside the peers.
 
-``python benchmarks/bench.py [SECTION …] [--json] [--picture SVG]``; without a section, all of them. A missed figure is
-told, never an error: another machine, another load. Progress goes to standard error.
+``python benchmarks/bench.py [SECTION …] [--json] [--picture SVG]``; without a section, all of them. A missed
+figure is told, never an error: another machine, another load. Progress goes to standard error.
 """
 
 from __future__ import annotations
