@@ -3,6 +3,7 @@
 # make demo     recordings/ and assets/ anew   make lock    requirements.txt anew
 BIN := .venv/bin
 
+# make soak PARTS=network   only the parts whose titles have that word
 .PHONY: run mover setup test chromium bench soak demo lock
 
 run: setup
@@ -27,7 +28,7 @@ bench: setup
 	@$(BIN)/python benchmarks/bench.py
 
 soak: setup
-	@$(BIN)/python benchmarks/soak.py
+	@$(BIN)/python benchmarks/soak.py $(PARTS)
 
 demo: setup
 	$(BIN)/python tools/make_recordings.py

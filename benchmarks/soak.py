@@ -3,7 +3,8 @@
 ``python benchmarks/soak.py [--minutes N] [--json] [WORD …]``: N minutes (15 unless told) for an hour of
 walk at 8× (7.5 of them) and rough handling (the other half), two thirds of N more for sensors on serial
 ports, as long for a stalled browser, half of that for one asleep, three minutes at most for sensors by
-network, and about five for the kills.
+network, three for a calibration and a clock, and about five for the kills. With WORDs only the parts whose
+titles have them all: ``serial``, ``network``, ``calibration``, ``kills``, …
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 
-from benchmarks import asleep, feeds, handling, hour, kills, links, stalled
+from benchmarks import asleep, calibrating, feeds, handling, hour, kills, links, stalled
 from benchmarks.bench import machine, measure
 from benchmarks.figures import table
 
@@ -42,6 +43,7 @@ def main() -> int:
         f"{count} kills of a recording": kills.kills(count),
         f"{ports_s / 60:.1f} minutes of sensors on serial ports": links.links(ports_s),
         f"{feeds_s / 60:.1f} minutes of sensors by network": feeds.feeds(feeds_s),
+        "a calibration and a clock on serial ports": calibrating.calibrating(),
         f"{8 * half_s / 60:.0f} minutes of walk at 8×": hour.hour(half_s),
         f"{half_s / 60:.1f} minutes of rough handling": handling.handling(half_s),
         f"{stalled_s / 60:.1f} minutes of a stalled browser": stalled.stalled(stalled_s),

@@ -17,6 +17,8 @@ from app.rotation import conjugate, multiply
 
 Z_UP: Axes = ((0, 1), (1, -1), (2, -1))  # a board with z up and x ahead
 RAD_PER_DEG = math.pi / 180.0
+#: More no inertial sensor reads (200 g, 7000 °/s): a digit or a bit was damaged where no checksum tells.
+MOST_MPS2, MOST_RADPS = 2000.0, 120.0
 _NEAR_RANGE = 0.98  # flagged from here on, as in recordings
 _HALF = math.sqrt(0.5)
 
@@ -24,6 +26,11 @@ _HALF = math.sqrt(0.5)
 NED: Quaternion = (1.0, 0.0, 0.0, 0.0)
 NWU: Quaternion = (0.0, 1.0, 0.0, 0.0)
 ENU: Quaternion = (0.0, _HALF, _HALF, 0.0)
+
+
+def _possible(v: Vector, most: float) -> bool:
+    """Finite and within ±``most``."""
+    return -most <= v[0] <= most and -most <= v[1] <= most and -most <= v[2] <= most
 
 
 def scaled(v: Vector, factor: float) -> Vector:
@@ -56,12 +63,12 @@ class Maker:
         saturation_d: int = 0,
         q_ed: Quaternion | None = None,
     ) -> Sample | None:
-        """A sample of force m/s², rate rad/s, field µT in device axes; None if they are not finite.
+        """A sample of force m/s², rate rad/s, field µT in device axes; None if no sensor reads that.
 
         ``saturation_d`` are the channels (bits as in ``Sample``) that the device itself calls clipped;
         ``q_ed`` is its orientation, taking device vectors into its earth frame.
         """
-        if not math.isfinite(sum(force_d) + sum(rate_d)):
+        if not (_possible(force_d, MOST_MPS2) and _possible(rate_d, MOST_RADPS)):
             return None
         if field_d is not None and not math.isfinite(sum(field_d)):
             field_d = None

@@ -71,6 +71,8 @@ def test_what_is_not_finite_is_no_sample_and_leaves_no_number() -> None:
     maker = Maker("foot", AS_GIVEN, Range())
     assert maker.make(0, 0, (math.nan, 0.0, 0.0), STILL) is None
     assert maker.make(0, 0, REST, (math.inf, -math.inf, 0.0)) is None
+    assert maker.make(0, 0, (0.0, -123456.0, 0.0), STILL) is None  # a lost decimal point
+    assert maker.make(0, 0, REST, (0.0, 0.0, 500.0)) is None
     sample = maker.make(0, 0, REST, STILL, (math.nan, 0.0, 0.0), 0, (0.1, 0.1, 0.0, math.nan))
     assert sample is not None
     assert (sample.seq, sample.field_b, sample.device_q_nb) == (0, None, None)
