@@ -18,7 +18,7 @@ from app.gestures.default import DefaultDecoder
 from app.gestures.merge import changes, decode
 from app.gestures.papers import PapersDecoder
 from app.gestures.words import Decision
-from app.motion import ATTITUDE, ClockLine, Floats, GyroBias, InputError, Recording, Role, Samples
+from app.motion import ATTITUDE, ClockLine, Floats, GyroBias, InputError, KnowBias, Recording, Role, Samples
 from app.outputs import tables
 from app.settings import Settings
 from app.sources.files import load, printable
@@ -71,7 +71,8 @@ def biases_of(spec: str, wanted: Recording, settings: Settings) -> dict[str, Gyr
 def estimate(
     recording: Recording, settings: Settings, biases: Mapping[str, GyroBias] | None = None
 ) -> Processed:
-    """Estimate a whole recording that has been read."""
+    """Estimate a whole recording that has been read; its own remembered biases hold where none is given."""
+    known = remembered(recording) | dict(biases or {})
     warm_up(settings.estimator)  # so that the seconds told are the estimator's, not the compiler's
     if settings.hindsight:
         warm_hindsight()
@@ -80,7 +81,7 @@ def estimate(
     stores = {}
     for sensor in recording.sensors:
         samples = stores[sensor.sensor] = store(sensor)
-        tracker = Tracker(settings, known=(biases or {}).get(sensor.sensor))
+        tracker = Tracker(settings, known=known.get(sensor.sensor))
         began = time.perf_counter()
         tracker.advance(samples)
         finish(tracker, samples)
@@ -90,6 +91,14 @@ def estimate(
     linked = settings.hindsight and link_worn(trackers, worn(recording), stores, settings.feet_apart_m)
     estimator_s += time.perf_counter() - began
     return Processed(recording, settings, trackers, estimator_s, linked)
+
+
+def remembered(recording: Recording) -> dict[str, GyroBias]:
+    """The gyro biases that a recorded walk of ours began with."""
+    orders = recording.journal.orders if recording.journal else ()
+    commands = [order.command for _, order in orders]
+    told = [command for command in commands if isinstance(command, KnowBias)]
+    return {known.sensor: GyroBias(known.rate_b, known.doubt_radps) for known in told}
 
 
 def worn(recording: Recording) -> dict[str, Worn]:

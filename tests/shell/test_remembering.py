@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from app.home import biases, calibrations
-from app.motion import KnowBias, Order, Role, SourceInfo
+from app.motion import Journal, KnowBias, Order, Recording, Role, SourceInfo
 from app.session import Session
 from app.settings import Settings
+from app.shell import batch
 from app.shell.remembering import Remembering
 from tests.estimator.walks import foot, one_by_one, rows_of
 
@@ -82,3 +84,20 @@ def test_a_damaged_file_is_left_and_the_walk_goes_on() -> None:
     path.parent.mkdir(parents=True)
     path.write_text("{")
     assert not walked(live()).biases
+
+
+def test_a_batch_of_a_recorded_walk_begins_with_its_bias() -> None:
+    samples = foot("strides=3&rate_hz=100&noise=1")
+    known = KnowBias("foot", (0.002, -0.001, 0.003), (5e-4, 5e-4, 5e-4), "found today")
+    count = len(samples)
+    rows = (np.zeros(count, np.int64), samples.matrix[:, 0].astype(np.int64))
+    journal = Journal(KALMAN, KALMAN, False, *rows, orders=((0, Order(known, "remembered", 0)),))
+    recording = Recording("walk.mcap", "Stridescope recording", (samples,), journal=journal)
+    session = Session(KALMAN)
+    session.apply(Order(known, "remembered", 0))
+    for sample in SAMPLES:
+        session.take(sample)
+    told = rows_of(batch.estimate(recording, KALMAN).trackers["foot"]).tobytes()
+    assert told == rows_of(session.main.feet["foot"].tracker).tobytes()
+    plain = replace(recording, journal=None)
+    assert told != rows_of(batch.estimate(plain, KALMAN).trackers["foot"]).tobytes()
