@@ -98,6 +98,7 @@ async def sought(path: Path, places: list[float], key: bytes, fill: bool) -> tup
 def assert_same_now(session: Session, landing: m.Landing) -> None:
     """What has landed stands where the walk from its first sample stands, and its trail leads there."""
     whole = Session(session.main.settings)
+    whole.main.biases = session.biases
     for sensor, store in session.stores.items():
         whole.main.advance(sensor, store.samples)
         one, other = session.main.feet[sensor], whole.main.feet[sensor]
@@ -185,6 +186,20 @@ def test_an_estimate_changed_on_the_way_is_landed_in_up_to_there_only(tmp_path: 
     assert journal is not None
     late = [state for place, _, told in journal.states if place > 23_000 and (state := read_state(told, KEY))]
     assert {state.settings for state in late} == {session.main.settings}
+
+
+def test_what_was_changed_before_a_seek_is_in_the_state_it_lands_on(tmp_path: Path) -> None:
+    orders: dict[int, m.Command] = {
+        0: m.KnowBias("left", (0.001, -0.002, 0.003), (0.0002, 0.0002, 0.0002), "a test"),
+        900: m.SetCandidate((("threshold_radps", 0.9),)),
+        1_000: m.ApplyCandidate(),
+    }
+    data, session = write(BUILT_IN["default"], orders)
+    path = tmp_path / "walk.mcap"
+    path.write_bytes(data)
+    again, landed = asyncio.run(sought(path, [130.0, 20.0, 130.0], KEY, fill=True))
+    assert landed >= 1
+    assert_same(session, again)
 
 
 def test_a_state_after_a_sample_that_the_disk_did_not_take_is_ignored() -> None:

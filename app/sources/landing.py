@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator
 from functools import cached_property
 
@@ -22,8 +23,7 @@ class Landings:
         self._sensors = timeline.sensors()
         self._states = journal.states if journal else ()
         self._told_ways = journal.ways if journal else ()
-        # whatever was changed before a state is in it in a way that only the log knows
-        self._end = min((place for place, _ in journal.orders), default=len(timeline)) if journal else 0
+        self._orders = sorted({place for place, _ in journal.orders}) if journal else []
 
     @cached_property
     def _ways(self) -> list[tuple[int, str, Way]]:
@@ -31,8 +31,9 @@ class Landings:
         return [(place, sensor, way) for place, sensor, way in read if way is not None]
 
     def landing(self, first: int, last: int, host_ns: int) -> Landing | None:
-        """From sample ``first`` to ``last``, or to the first order if it is sooner; None if not far."""
-        last = min(last, self._end)
+        """From sample ``first`` to ``last``, or to the next order if it is sooner; None if not far."""
+        order = bisect_right(self._orders, first)  # none is leapt over; those before have been taken
+        last = min([last, *self._orders[order : order + 1]])
         if last <= first or self._timeline.elapsed_ns(last - 1) < self._timeline.elapsed_ns(first) + LEAST_NS:
             return None
         saved = {sensor: self._newest(sensor, first, last) for sensor in self._sensors}
