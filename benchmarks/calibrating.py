@@ -40,7 +40,7 @@ def calibrated() -> Section:
     true = make_calibration({"seed": SEED})
     with (
         tempfile.TemporaryDirectory() as folder,
-        running("app", "emulate", "gx1", "--source", f"sim:calibration?seed={SEED}") as sensor,
+        running("app", "emulate", "gx1", "--source", f"sim:calibration?seed={SEED}&rate=400") as sensor,
     ):
         out, port = Path(folder) / "found.json", first_line(sensor)
         command = ["calibrate", "--no-save", "--out", str(out), "--field", "48.6"]

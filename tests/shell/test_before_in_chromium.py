@@ -48,7 +48,7 @@ def test_a_calibration_by_the_page_is_used_by_the_next_walk_and_undone_by_one_cl
         wait(page, "as it comes")
         press(page, "Start")
         page.get_by_text(re.compile(r"Step \d+ of 10")).wait_for(timeout=PATIENCE_MS)
-        page.locator(".ss-held").scroll_into_view_if_needed(timeout=PATIENCE_MS)
+        page.get_by_role("button", name="Save and use", exact=True).evaluate("it => it.scrollIntoView()")
         page.screenshot(path=build_dir / "calibration_step.png", timeout=PATIENCE_MS)
         wait(page, "Found")
         page.screenshot(path=build_dir / "calibration_found.png", timeout=PATIENCE_MS)
