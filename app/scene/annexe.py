@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from html import escape
-
 from app.motion import OpenTown, Status
 from app.scene.controls import Controls
+from app.scene.words import plain
 
 HINT = "A town to walk through by marching in place: simulated feet, steered by the arrow keys."
 
@@ -27,8 +26,7 @@ def link(address: str) -> str:
     """The way to the town, in a tab of its own; nothing while it is closed."""
     if not address:
         return ""
-    there = escape(address, quote=True)
     return (
-        f'<p class="ss-notes"><a href="{there}" target="_blank" rel="noreferrer">Open the town</a>: arrow'
-        " keys walk. Where this page asked for a token, it asks for the same.</p>"
+        f'<p class="ss-notes"><a href="{plain(address)}" target="_blank" rel="noreferrer">Open the town</a>:'
+        " arrow keys walk. Where this page asked for a token, it asks for the same.</p>"
     )

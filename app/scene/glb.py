@@ -37,6 +37,16 @@ class Part:
     open: bool = False
 
 
+def joined(name: str, parts: Sequence[Part]) -> Part:
+    """Parts without pictures as one mesh: one draw call. It is clear or open if the first of them is."""
+    starts = np.cumsum([0, *(len(part.vertices) for part in parts)])
+    faces = [part.faces + np.uint32(start) for part, start in zip(parts, starts, strict=False)]
+    return Part(
+        name, np.concatenate([part.vertices for part in parts]), np.concatenate(faces),
+        np.concatenate([part.colours for part in parts]), clear=parts[0].clear, open=parts[0].open,
+    )  # fmt: skip
+
+
 class _Body:
     """The binary chunk and what describes it."""
 

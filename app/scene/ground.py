@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from app.motion import Vector
 from app.scene.baked import linear, ribbons
 from app.scene.colours import Rgb, blend, theme
-from app.scene.glb import Part, glb
+from app.scene.glb import Part, glb, joined
 from app.scene.shoe import SENSOR_HEIGHT_M
 
 #: How far the bold lines go, and the others: far ones melt together, and cost more to draw than a shoe.
@@ -156,7 +156,7 @@ class Ground:
             self._frame.position = at
 
     def _lay(self, name: str, parts: list[Part]) -> None:
-        self._scene.add_glb(name, glb(parts), cast_shadow=False, receive_shadow=False)
+        self._scene.add_glb(name, glb([joined("lines", parts)]), cast_shadow=False, receive_shadow=False)
 
 
 def lines(name: str, segments: NDArray[np.float32], ink: Rgb, width_m: float) -> Part:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -16,7 +15,7 @@ from app.rotation import from_yaw
 from app.scene import private
 from app.scene.baked import apart, lit
 from app.scene.colours import FOOT, Rgb, shade
-from app.scene.glb import Part, glb
+from app.scene.glb import Part, glb, joined
 
 ASSET = Path(__file__).resolve().parents[2] / "assets" / "shoe.npz"
 #: The sensor's height above the floor while the shoe stands flat (tools/make_shoe.py).
@@ -59,8 +58,8 @@ def solid(role: Role) -> bytes:
     made = []
     for name, (vertices, faces) in parts(role is Role.LEFT).items():
         mesh = apart(vertices, faces) if name == "sensor" else (vertices, faces)
-        made.append((*mesh, lit(*mesh, paint(FOOT[role])[name])))
-    return glb([_joined(made, clear=False)])
+        made.append(Part(name, *mesh, lit(*mesh, paint(FOOT[role])[name]), open=True))
+    return glb([joined("shoe", made)])
 
 
 @cache
@@ -69,37 +68,30 @@ def sheer(role: Role, colour: Rgb) -> bytes:
     made = []
     for name, mesh in parts(role is Role.LEFT).items():
         if name not in ("lining", "light", "stripe", "laces"):
-            made.append((*mesh, np.pad(lit(*mesh, colour), ((0, 0), (0, 1)), constant_values=SHEER)))
-    return glb([_joined(made, clear=True)])
+            colours = np.pad(lit(*mesh, colour), ((0, 0), (0, 1)), constant_values=SHEER)
+            made.append(Part(name, *mesh, colours, clear=True))
+    return glb([joined("ghost", made)])
 
 
-def _joined(
-    made: Sequence[tuple[NDArray[np.float32], NDArray[np.uint32], NDArray[np.float32]]], clear: bool
-) -> Part:
-    starts = np.cumsum([0, *(len(vertices) for vertices, _, _ in made)])
-    faces = np.concatenate(
-        [faces + np.uint32(start) for (_, faces, _), start in zip(made, starts, strict=False)]
-    )
-    return Part(
-        "shoe", np.concatenate([vertices for vertices, _, _ in made]), faces,
-        np.concatenate([colours for _, _, colours in made]), clear=clear, open=True,
-    )  # fmt: skip
+@cache
+def dark(role: Role) -> bytes:
+    """The soft dark patch under a shoe, as binary glTF: three flat soles, each smaller and darker."""
+    outline, faces = sole(role is Role.LEFT)
+    centre, layers = outline[:1], []
+    for i, (wider, opacity) in enumerate(((1.3, 0.10), (1.1, 0.18), (0.92, 0.30))):
+        place = centre + (outline - centre) * wider - np.array([0.0, 0.0, 0.001 * i], np.float32)
+        black = np.tile(np.array([0.0, 0.0, 0.0, opacity], np.float32), (len(place), 1))
+        layers.append(Part(f"layer_{i}", place.astype(np.float32), faces, black, clear=True))
+    return glb([joined("shadow", layers)])
 
 
 class Shadow:
-    """A soft dark patch on the floor under a shoe: three flat soles, each wider and fainter."""
+    """A soft dark patch on the floor under a shoe: a mesh of its own, for it lies level."""
 
     def __init__(self, scene: viser.SceneApi, name: str, role: Role) -> None:
         self.frame = scene.add_frame(name, show_axes=False)
         self._last: tuple[float, Vector] | None = None
-        outline, faces = sole(role is Role.LEFT)
-        centre = outline[:1]
-        for i, (wider, opacity) in enumerate(((1.3, 0.10), (1.1, 0.18), (0.92, 0.30))):
-            layer = centre + (outline - centre) * wider - np.array([0.0, 0.0, 0.001 * i], np.float32)
-            scene.add_mesh_simple(
-                f"{name}/{i}", layer, faces, color=(0, 0, 0), opacity=opacity,
-                side="double", cast_shadow=False, receive_shadow=False,
-            )  # fmt: skip
+        scene.add_glb(f"{name}/soft", dark(role), cast_shadow=False, receive_shadow=False)
 
     def lie(self, position: Vector, yaw_rad: float, floor_down_m: float) -> None:
         """Under a shoe that is at ``position``, on a floor at ``floor_down_m``."""

@@ -9,7 +9,7 @@ import struct
 import numpy as np
 import trimesh
 
-from app.scene.glb import Part, glb
+from app.scene.glb import Part, glb, joined
 
 
 def part(name: str, shift: float = 0.0, **more: object) -> Part:
@@ -65,3 +65,13 @@ def test_colours_are_kept_as_linear_light() -> None:
     paint = np.frombuffer(told, np.uint16, 16, start).reshape(4, 4) / 65535.0
     np.testing.assert_allclose(paint[:, :3], part("one").colours, atol=1e-4)
     np.testing.assert_allclose(paint[:, 3], 1.0)
+
+
+def test_joined_parts_are_the_same_triangles_in_the_same_colours() -> None:
+    parts = [part("one"), part("two", 5.0), part("three", -2.0)]
+    one = joined("all", parts)
+    np.testing.assert_array_equal(
+        one.vertices[one.faces], np.concatenate([p.vertices[p.faces] for p in parts])
+    )
+    np.testing.assert_array_equal(one.colours[one.faces], np.concatenate([p.colours[p.faces] for p in parts]))
+    assert len(document(glb([one]))["meshes"]) == 1
