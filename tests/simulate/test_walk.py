@@ -194,4 +194,4 @@ def test_the_oracle_shares_no_code_with_what_it_judges() -> None:
     assert imported
     # the lab's lessons name settings; a record of numbers is no oracle
     others = {name for name in imported if not name.startswith("app.simulate.")}
-    assert others == {"app.motion", "app.settings"}
+    assert others == {"app.limits", "app.motion", "app.settings"}
