@@ -11,7 +11,7 @@ import numpy as np
 
 from app.blocks import Blocks
 from app.motion import ATTITUDE, POSITION, Floats, Quaternion, Trail, Truth
-from app.rotation import from_yaw, multiply, pitch_of, yaw_of
+from app.rotation import from_yaw, multiply, yaw_of
 from app.settings import Settings
 from app.trail import TrailBuilder
 
@@ -107,12 +107,20 @@ def thinned(first: int, last: int) -> list[int]:
 
 def errors(recent: Iterable[TruePlace], rows: Blocks) -> Floats:
     """Seconds, metres from the truth, pitch of the estimate's ``rows`` [n, 12] and of the truth: [k, 4]."""
-    found = [
-        (true.t_s, error_m(true, rows), pitch_of(attitude(true, rows)), pitch_of(true.q_nb))
-        for true in recent
-        if rows.start <= true.row < rows.end
-    ]
-    return np.array(found).reshape(-1, 4)
+    known = [true for true in recent if rows.start <= true.row < rows.end]
+    if not known:
+        return np.empty((0, 4))
+    found = np.array([block[place] for block, place in (rows.block(true.row) for true in known)])
+    away = np.linalg.norm(np.array([true.position_n for true in known]) - found[:, POSITION], axis=1)
+    t_s, true_q_nb = [true.t_s for true in known], np.array([true.q_nb for true in known])
+    return np.stack([t_s, away, pitches(found[:, ATTITUDE]), pitches(true_q_nb)], axis=1)
+
+
+def pitches(q_nb: Floats) -> Floats:
+    """Elevation of body x above the horizontal plane, rad [k], of unit quaternions [k, 4]."""
+    w, x, y, z = q_nb.T
+    up: Floats = np.arcsin(np.clip(2.0 * (w * y - x * z), -1.0, 1.0))
+    return up
 
 
 def error_m(true: TruePlace, rows: Blocks) -> float:

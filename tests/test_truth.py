@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from app.motion import Order, RestartHere
-from app.rotation import yaw_of
+from app.rotation import pitch_of, yaw_of
 from app.session import Session
 from app.settings import Settings
 from app.simulate.walk import make_walk
-from app.truth import KEPT, TrueWalk
+from app.truth import KEPT, TrueWalk, pitches
 from tests.estimator.walks import one_by_one
 
 OPTIONS = {"path": "square", "size_m": "20", "rate_hz": "100", "distance_m": "40"}
@@ -40,7 +40,7 @@ def test_the_errors_are_distances_and_end_with_the_newest() -> None:
     snapshot = session.snapshot()
     found = snapshot.errors["foot"]
     assert found.shape == (KEPT, 4)
-    assert found[-1, 1] == snapshot.main.feet[0].error_m
+    assert found[-1, 1] == pytest.approx(snapshot.main.feet[0].error_m, rel=1e-14)  # another order of adding
     assert snapshot.t_s - found[-1, 0] < 0.3
     assert snapshot.t_s - found[0, 0] == pytest.approx(10.0, abs=0.5)
     assert found[:, 1].max() < 0.1  # what sampling at 100 Hz costs
@@ -83,3 +83,9 @@ def test_the_pitch_stands_beside_the_true_one() -> None:
     _, _, pitch, true = session.snapshot().errors["foot"].T
     assert np.ptp(true) > 0.5
     assert pitch == pytest.approx(true, abs=0.02)
+
+
+def test_pitches_are_those_of_one_after_another() -> None:
+    q = np.random.default_rng(0).normal(size=(50, 4))
+    q /= np.linalg.norm(q, axis=1)[:, None]
+    np.testing.assert_allclose(pitches(q), [pitch_of((w, x, y, z)) for w, x, y, z in q.tolist()], atol=1e-14)
