@@ -1,1 +1,1 @@
-"""Edge: the user's configuration folder: profiles, visitors, calibrations."""
+"""Edge: the user's configuration folder: profiles, visitors, calibrations, gyro biases, a key."""
