@@ -26,7 +26,7 @@ from app.commands import (
     walk,
 )
 from app.commands.shared import Parser
-from app.motion import InputError
+from app.motion.basics import InputError
 
 COMMANDS = {
     "walk": walk,

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 #: Rows in a block: 4096 rows are 41 s at 100 Hz.
 BLOCK = 4096

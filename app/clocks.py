@@ -13,7 +13,9 @@ from typing import Protocol
 
 import numpy as np
 
-from app.motion import GAP_NS, ClockLine, Ints, SourceInfo
+from app.motion.basics import Ints
+from app.motion.samples import GAP_NS, ClockLine
+from app.motion.source import SourceInfo
 
 BIN_NS = 500_000_000
 #: Half seconds kept: a crystal's drift is steady for minutes, not for hours.

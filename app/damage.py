@@ -12,7 +12,9 @@ from dataclasses import replace
 
 from app.formats.wire.stream import Counters
 from app.health import FEET, light_of
-from app.motion import Health, Light, Role, Snapshot
+from app.motion.basics import Role
+from app.motion.health import Health, Light
+from app.motion.snapshot import Snapshot
 
 SPAN_S = 10.0
 LOOK_S = 1.0

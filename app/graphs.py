@@ -6,7 +6,8 @@ import math
 
 import numpy as np
 
-from app.motion import ROW_WIDTH, VELOCITY, Graph, RowColumn
+from app.motion.estimate import ROW_WIDTH, VELOCITY, RowColumn
+from app.motion.snapshot import Graph
 from app.tracks import FootTrack, SensorStore
 
 #: Seconds that the graphs show, and about how many points.

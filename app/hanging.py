@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion import Floats, PendulumView, Quaternion
+from app.motion.basics import Floats, Quaternion
+from app.motion.snapshot import PendulumView
 from app.rotation import pitch_of
 
 #: A swing smaller than this has no period that one could tell.

@@ -14,7 +14,9 @@ from statistics import median
 from typing import NamedTuple
 
 from app.clocks import Clock
-from app.motion import GaitPhase, Health, Light, Recent, Role, Sample, Vector
+from app.motion.basics import GaitPhase, Role, Vector
+from app.motion.health import Health, Light, Recent
+from app.motion.samples import Sample
 
 BINS = 10
 BIN_NS = 1_000_000_000

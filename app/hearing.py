@@ -16,7 +16,9 @@ from app.gestures.intake import FEET, Intake
 from app.gestures.machines import FootNow, History, feet_now, thresholds
 from app.gestures.papers import PapersDecoder
 from app.gestures.words import SILENCE_NS, UNKNOWN_Q, FootReading, standing
-from app.motion import ATTITUDE, SAMPLE_WIDTH, Quaternion, Role, Sample
+from app.motion.basics import Quaternion, Role
+from app.motion.estimate import ATTITUDE
+from app.motion.samples import SAMPLE_WIDTH, Sample
 from app.settings import Settings
 from app.visit import FootLight, Machines
 

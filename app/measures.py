@@ -8,7 +8,11 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from app.motion import Health, Link, Measure, RecorderState, Snapshot, Status
+from app.motion.door import Measure
+from app.motion.health import Health
+from app.motion.snapshot import Snapshot
+from app.motion.source import Link
+from app.motion.status import RecorderState, Status
 
 PREFIX = "stridescope"
 STATM = Path("/proc/self/statm")  # Linux only

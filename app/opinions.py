@@ -10,7 +10,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.studies.attitude import Config, Found
 from app.studies.motions import MOTIONS
 from app.studies.words import Task

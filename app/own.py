@@ -13,7 +13,9 @@ from statistics import median
 
 import numpy as np
 
-from app.motion import GAP_NS, GaitPhase, OwnView, Quaternion, Sample, Vector
+from app.motion.basics import GaitPhase, Quaternion, Vector
+from app.motion.samples import GAP_NS, Sample
+from app.motion.snapshot import OwnView
 from app.rotation import conjugate, from_yaw, multiply, rotate, yaw_of
 from app.settings import Settings
 from app.trail import TrailBuilder

@@ -11,7 +11,11 @@ from collections.abc import Mapping, Sequence
 
 from app.calibration.still import Pose, Stillness
 from app.health import DRIFT_PPM, FEET, GRAVITY_MPS2, LOST, SLOW_HZ
-from app.motion import FootView, Health, Line, LineState, PreflightView, Role, Sample
+from app.motion.basics import Role
+from app.motion.health import Health
+from app.motion.samples import Sample
+from app.motion.snapshot import FootView
+from app.motion.status import Line, LineState, PreflightView
 from app.rotation import yaw_of
 
 STILL_S, END_STILL_S = 2.0, 1.2

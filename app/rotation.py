@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 
 from app.compiled import kernel
-from app.motion import Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
 
 
 @kernel

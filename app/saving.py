@@ -10,7 +10,7 @@ import numpy as np
 
 from app.blocks import Blocks
 from app.estimator.tracker import Tracker
-from app.motion import Saved, Way
+from app.motion.estimate import Saved, Way
 from app.session import Session
 from app.tracks import Track
 from app.trail import TOLERANCES_M, TrailBuilder, coarser

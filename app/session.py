@@ -11,12 +11,34 @@ import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 
-from app import motion as m
 from app.blocks import BLOCK
 from app.clocks import Clock, KnownClock, LiveClock
 from app.graphs import graph_of
 from app.hanging import pendulum_view
 from app.health import Monitor, judge
+from app.motion.basics import Floats, GaitPhase, InputError, Role, role_of
+from app.motion.commands import (
+    ApplyCandidate,
+    Command,
+    DropCandidate,
+    KeepAs,
+    KnowBias,
+    LookBack,
+    Order,
+    ReplaceCandidate,
+    ResetHeading,
+    RestartHere,
+    SetApplyAtOnce,
+    SetCandidate,
+    SwapAB,
+    Undo,
+)
+from app.motion.estimate import ATTITUDE, ROW_WIDTH
+from app.motion.health import Health
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import SAMPLE_WIDTH, GyroBias, Sample
+from app.motion.snapshot import Change, OwnView, PendulumView, Snapshot
+from app.motion.source import Truth
 from app.own import OwnWalk
 from app.rotation import yaw_of
 from app.settings import Settings
@@ -39,8 +61,8 @@ class Session:
     def __init__(
         self,
         settings: Settings,
-        roles: Callable[[str], m.Role] = m.role_of,
-        truth: m.Truth | None = None,
+        roles: Callable[[str], Role] = role_of,
+        truth: Truth | None = None,
         budget_bytes: int = DEFAULT_BUDGET,
         clock: Callable[[str], Clock] = lambda _: KnownClock(),
         epoch: int = 0,
@@ -58,10 +80,10 @@ class Session:
         self.filling: Reestimation | None = None  # after a landing
         self._landed: Track | None = None
         self._next: Reestimation | None = None  # a candidate moved while an apply was under way
-        self.changes: list[m.Change] = []
-        self.log: list[tuple[int, m.Order]] = []  # orders, each with the number it was taken under
+        self.changes: list[Change] = []
+        self.log: list[tuple[int, Order]] = []  # orders, each with the number it was taken under
         self.stores: dict[str, SensorStore] = {}
-        self.biases: dict[str, m.GyroBias] = {}  # known before the walk, by sensor
+        self.biases: dict[str, GyroBias] = {}  # known before the walk, by sensor
         self.main = Track(f"main{epoch}", settings, self.biases)
         self.candidate: Track | None = None
         self._roles = roles
@@ -79,19 +101,19 @@ class Session:
         self._jobs = 0
         self._frozen: dict[str, TrailBuilder] = {}  # the trail of samples that are gone
         self._true: dict[str, TrueWalk] = {}
-        self._errors: dict[str, m.Floats] = {}
+        self._errors: dict[str, Floats] = {}
         self._errors_at: dict[str, int] = {}  # the row of the newest of them
         self._own: dict[str, OwnWalk] = {}  # of sensors that tell their orientation
 
     # --- in ----------------------------------------------------------------------------------------
 
-    def take(self, sample: m.Sample) -> None:
+    def take(self, sample: Sample) -> None:
         """One sample: kept, or dropped and counted; every track moves on."""
         self.number += 1
         store = self.stores.get(sample.sensor) or self._open(sample.sensor)
         monitor = self._monitors[sample.sensor]
         if not store.take(sample):
-            monitor.add(sample, False, m.GaitPhase.STANCE)
+            monitor.add(sample, False, GaitPhase.STANCE)
             return
         self._place(store, sample.device_ns)
         self.main.advance(sample.sensor, store.samples)
@@ -103,7 +125,7 @@ class Session:
         if store.samples.end % BLOCK == 1:
             self._keep_budget()
 
-    def _take_own(self, sample: m.Sample) -> None:
+    def _take_own(self, sample: Sample) -> None:
         """Walk by the sensor's own orientation, too."""
         foot, name = self.main.feet[sample.sensor], sample.sensor
         own = self._own.get(name)
@@ -111,7 +133,7 @@ class Session:
             own = self._own[name] = OwnWalk(f"own{self.epoch}.{name}")
         own.take(sample, foot.phase, foot.tracker.levelled, foot.q_nb, foot.position_n, self.main.settings)
 
-    def take_stretch(self, stretch: m.Stretch) -> None:
+    def take_stretch(self, stretch: Stretch) -> None:
         """Many samples of a recording: the same to the bit as one by one, at a hundredth of the cost."""
         self.number += len(stretch)
         full = False
@@ -127,7 +149,7 @@ class Session:
         if full:
             self._keep_budget()
 
-    def land(self, landing: m.Landing) -> bool:
+    def land(self, landing: Landing) -> bool:
         """Take a landing's samples from the states near its end, and want the walk before them filled in.
 
         To the bit what ``take_stretch`` makes of them once ``filled``; False, and nothing taken, where the
@@ -145,9 +167,9 @@ class Session:
         self.filling = self._fresh(fill)
         return True
 
-    def _has_room_for(self, landing: m.Landing) -> bool:
+    def _has_room_for(self, landing: Landing) -> bool:
         """Whether the whole walk stays in memory, and goes on where the landing's samples begin."""
-        row_bytes = 8 * (m.SAMPLE_WIDTH + 2 + 2 * m.ROW_WIDTH)
+        row_bytes = 8 * (SAMPLE_WIDTH + 2 + 2 * ROW_WIDTH)
         here = {sensor: (store.samples.start, store.samples.end) for sensor, store in self.stores.items()}
         follows = all(here.get(r.samples.sensor, (0, 0)) == (0, r.first) for r in landing.stretch.rows)
         return follows and self.stored_bytes + len(landing) * row_bytes < self._budget // 2
@@ -173,58 +195,58 @@ class Session:
         self._monitors[sensor] = Monitor(clock)
         return store
 
-    def name_feet(self, roles: Mapping[str, m.Role]) -> None:
+    def name_feet(self, roles: Mapping[str, Role]) -> None:
         """Which sensor is which foot, as somebody found out meanwhile: for display only."""
         for sensor, role in roles.items():
             if sensor in self.stores:
                 self.stores[sensor].role = role
 
-    def apply(self, order: m.Order) -> None:
+    def apply(self, order: Order) -> None:
         """One order; it takes effect after the samples taken so far. An impossible one is ``InputError``."""
         self.number += 1
         self.log.append((self.number, order))
         try:
             self._apply(order, order.command)
         except ValueError as error:
-            raise m.InputError(str(error)) from None
+            raise InputError(str(error)) from None
 
-    def _apply(self, order: m.Order, command: m.Command) -> None:
+    def _apply(self, order: Order, command: Command) -> None:
         match command:
-            case m.SetCandidate(changes):
+            case SetCandidate(changes):
                 settings = self.candidate_settings.with_changes(dict(changes))
                 moved = " ".join([SLIDER, *sorted(key for key, _ in changes)])
                 self._want(order, settings, self._apply_at_once, moved)
-            case m.ReplaceCandidate(settings, reason):
+            case ReplaceCandidate(settings, reason):
                 self._want(order, settings, self._apply_at_once, reason)
-            case m.ApplyCandidate():
+            case ApplyCandidate():
                 self._apply_candidate(order)
-            case m.DropCandidate():
+            case DropCandidate():
                 self.wanted, self._next, self.candidate = self._coming, None, None
-            case m.Undo():
+            case Undo():
                 self._undo_last(order)
-            case m.SetApplyAtOnce(on):
+            case SetApplyAtOnce(on):
                 self._apply_at_once = on
                 if on and self.candidate_settings != self.main.settings:
-                    self._apply(order, m.ApplyCandidate())
-            case m.KeepAs(slot):
+                    self._apply(order, ApplyCandidate())
+            case KeepAs(slot):
                 if slot not in ("A", "B"):
-                    raise m.InputError(f"keep as {slot!r}: expected A or B")
+                    raise InputError(f"keep as {slot!r}: expected A or B")
                 self._slots[slot], self._slot_now = (self._coming or self.main).settings, slot
-            case m.SwapAB():
+            case SwapAB():
                 other = "A" if self._slot_now == "B" else "B"
                 if other in self._slots:
                     self._slot_now = other
                     self._want(order, self._slots[other], True, f"swapped to {other}")
-            case m.ResetHeading():
+            case ResetHeading():
                 self._reset_heading(order)
-            case m.RestartHere():
+            case RestartHere():
                 self._restart(order)
-            case m.KnowBias():
+            case KnowBias():
                 self._know_bias(order, command)
-            case m.LookBack():
+            case LookBack():
                 self._look_back(order)
             case _:
-                raise m.InputError(f"{type(command).__name__} is not for the session")
+                raise InputError(f"{type(command).__name__} is not for the session")
 
     @property
     def candidate_settings(self) -> Settings:
@@ -277,7 +299,7 @@ class Session:
 
     # --- inside ------------------------------------------------------------------------------------
 
-    def _want(self, order: m.Order, settings: Settings, apply: bool, reason: str) -> None:
+    def _want(self, order: Order, settings: Settings, apply: bool, reason: str) -> None:
         coming = self._coming
         if settings == self.main.settings and (apply or coming is None):
             self.wanted, self._next, self.candidate = None, None, None
@@ -289,7 +311,7 @@ class Session:
         else:
             self._next = job if settings != coming.settings else None
 
-    def _job(self, order: m.Order, settings: Settings, apply: bool, reason: str) -> Reestimation:
+    def _job(self, order: Order, settings: Settings, apply: bool, reason: str) -> Reestimation:
         before = (self._coming or self.main).settings
         return Reestimation(0, settings, {}, {}, apply, order.who, reason, order.host_ns, self.number, before)
 
@@ -307,7 +329,7 @@ class Session:
         job = replace(job, number=self._jobs, epoch=self.epoch, biases=dict(self.biases), worn=worn)
         return replace(job, stores=stores, bases=self.main.bases())
 
-    def _apply_candidate(self, order: m.Order) -> None:
+    def _apply_candidate(self, order: Order) -> None:
         why = self._job(order, self.candidate_settings, True, "applied")
         if self._next is not None:
             self._pass_over()
@@ -318,7 +340,7 @@ class Session:
         elif self.wanted is None and self.candidate is not None:
             self._make_main(self.candidate, why)
 
-    def _undo_last(self, order: m.Order) -> None:
+    def _undo_last(self, order: Order) -> None:
         coming = self._coming
         if coming is not None and coming.reason != "undo" and not coming.look_back:
             self.wanted = replace(
@@ -333,7 +355,7 @@ class Session:
             self._undo.append(why.before)
         reason = "slider" if why.reason.startswith(SLIDER) else why.reason
         what = f"{reason}: {why.before.differences(track.settings)}".removesuffix(": ")
-        self._note(m.Change(why.taken, why.host_ns, why.who, what))
+        self._note(Change(why.taken, why.host_ns, why.who, what))
         turn_rad = track.settings.start_heading_rad - self.main.settings.start_heading_rad
         for sensor, frozen in self._frozen.items():
             if turn_rad:
@@ -353,11 +375,11 @@ class Session:
             and 0 <= why.host_ns - host_ns < DRAG_NS
         )
 
-    def _note(self, change: m.Change) -> None:
+    def _note(self, change: Change) -> None:
         self.changes.append(change)
         del self.changes[:-CHANGES]
 
-    def _look_back(self, order: m.Order) -> None:
+    def _look_back(self, order: Order) -> None:
         """Smooth the main track, unless it is about to change anyway or has been smoothed up to now."""
         settings, now_s = self.main.settings, max((s.elapsed_s for s in self.stores.values()), default=0.0)
         done = self.main.smoothed_s is not None and self.main.smoothed_s >= now_s
@@ -366,15 +388,15 @@ class Session:
             job = self._job(order, settings, True, LOOKED_BACK)
             self.wanted = self._fresh(replace(job, look_back=True))
 
-    def _know_bias(self, order: m.Order, known: m.KnowBias) -> None:
+    def _know_bias(self, order: Order, known: KnowBias) -> None:
         """A sensor's gyro bias from before: only a walk that has not begun can begin with it."""
         if known.sensor in self.stores:
-            raise m.InputError(f"gyro bias of {known.sensor}: its walk has begun, expected before")
-        self.biases[known.sensor] = m.GyroBias(known.rate_b, known.doubt_radps)
+            raise InputError(f"gyro bias of {known.sensor}: its walk has begun, expected before")
+        self.biases[known.sensor] = GyroBias(known.rate_b, known.doubt_radps)
         what = f"{known.sensor}: gyro bias remembered, {known.source}"
-        self._note(m.Change(self.number, order.host_ns, order.who, what))
+        self._note(Change(self.number, order.host_ns, order.who, what))
 
-    def _reset_heading(self, order: m.Order) -> None:
+    def _reset_heading(self, order: Order) -> None:
         if (
             self._coming is not None
         ):  # the heading is that of the walk as applied: it cannot wait for a worker
@@ -382,15 +404,15 @@ class Session:
         settings = self.main.settings
         for foot in self.main.feet.values():
             block, place = foot.tracker.rows.block(foot.tracker.rows.end - 1)
-            yaw = yaw_of(tuple(block[place, m.ATTITUDE].tolist()))
+            yaw = yaw_of(tuple(block[place, ATTITUDE].tolist()))
             heading = math.remainder(self.main.settings.start_heading_rad - yaw, math.tau)
             changed = settings.with_changes({"start_heading_rad": heading})
             self._want(order, changed, True, "heading reset")
             return
 
-    def _restart(self, order: m.Order) -> None:
+    def _restart(self, order: Order) -> None:
         coming, shown = self._coming, self.candidate_settings
-        self._note(m.Change(self.number, order.host_ns, order.who, "restarted here"))
+        self._note(Change(self.number, order.host_ns, order.who, "restarted here"))
         self.epoch += 1
         self.stores, self._frozen, self._true, self._origin_ns = {}, {}, {}, None
         self._errors, self._errors_at = {}, {}
@@ -425,12 +447,12 @@ class Session:
 
     # --- out ---------------------------------------------------------------------------------------
 
-    def snapshot(self) -> m.Snapshot:
+    def snapshot(self) -> Snapshot:
         """What the page needs, now. Its cost does not grow with the walk."""
         stores = self.stores
         true = self._look_at_truth()
         now_s = max((s.shared_s(s.elapsed_s) for s in stores.values()), default=0.0)
-        return m.Snapshot(
+        return Snapshot(
             number=self.number,
             t_s=now_s,
             main=self.main.view(stores, true),
@@ -456,7 +478,7 @@ class Session:
             pendulum=self._look_at_pendulum(),
         )
 
-    def errors_so_far(self) -> dict[str, m.Floats]:
+    def errors_so_far(self) -> dict[str, Floats]:
         """The main track beside the truth over the whole walk that is kept, as ``Snapshot.errors``."""
         found = {}
         for sensor, true in self._true.items():
@@ -465,19 +487,19 @@ class Session:
             found[sensor] = errors(true.at(wanted, store, self.main.settings), rows)
         return found
 
-    def _look_at_own(self) -> dict[str, m.OwnView]:
+    def _look_at_own(self) -> dict[str, OwnView]:
         feet, settings = self.main.feet, self.main.settings
         views = {name: own.view(feet[name].q_nb, settings) for name, own in self._own.items()}
         return {name: view for name, view in views.items() if view is not None}
 
-    def _look_at_pendulum(self) -> m.PendulumView | None:
+    def _look_at_pendulum(self) -> PendulumView | None:
         if self._rod_m is None:
             return None
         for sensor, true in self._true.items():
             rows, settings = self.main.feet[sensor].tracker.rows, self.main.settings
             now = true.at([rows.end - 1], self.stores[sensor], settings)[0]
             return pendulum_view(self._rod_m, attitude(now, rows), now.q_nb, self._errors[sensor])
-        return m.PendulumView(self._rod_m)
+        return PendulumView(self._rod_m)
 
     def _look_at_truth(self) -> dict[str, TruePlace]:
         if self._truth is None:
@@ -494,11 +516,11 @@ class Session:
                 self._errors[sensor] = errors(self._true[sensor].recent, self.main.feet[sensor].tracker.rows)
         return places
 
-    def _health(self, sensor: str, store: SensorStore, now_s: float) -> m.Health:
+    def _health(self, sensor: str, store: SensorStore, now_s: float) -> Health:
         foot = self.main.feet.get(sensor)
         segments = 1 + len(foot.tracker.segments) if foot else 0
         behind_s = now_s - store.shared_s(store.elapsed_s)
         recent = self._monitors[sensor].recent(behind_s, live=isinstance(store.clock, LiveClock))
         light, reason = judge(store.role, recent, self.main.settings.magnetometer)
         counts = (store.samples.end, dict(store.dropped), store.saturated, segments)
-        return m.Health(store.rate_hz(), *counts, recent, light, reason)
+        return Health(store.rate_hz(), *counts, recent, light, reason)

@@ -17,24 +17,11 @@ from app.estimator.feet import Worn, link_worn
 from app.estimator.landing import landed
 from app.estimator.smoother import finish
 from app.estimator.tracker import Checkpoint, Tracker
-from app.motion import (
-    ATTITUDE,
-    SAMPLE_WIDTH,
-    Footprint,
-    FootView,
-    GaitPhase,
-    GyroBias,
-    Landing,
-    Quaternion,
-    Role,
-    RowColumn,
-    Rows,
-    Sample,
-    TrackView,
-    Trail,
-    TrailPiece,
-    Vector,
-)
+from app.motion.basics import GaitPhase, Quaternion, Role, Vector
+from app.motion.estimate import ATTITUDE, RowColumn
+from app.motion.recording import Landing
+from app.motion.samples import SAMPLE_WIDTH, GyroBias, Rows, Sample
+from app.motion.snapshot import Footprint, FootView, TrackView, Trail, TrailPiece
 from app.settings import Settings
 from app.trail import TOLERANCES_M, Segments, TrailBuilder, coarser
 from app.truth import TruePlace, error_m

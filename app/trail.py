@@ -9,7 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.compiled import kernel
-from app.motion import Floats, Trail, TrailPiece
+from app.motion.basics import Floats
+from app.motion.snapshot import Trail, TrailPiece
 
 Segments = NDArray[np.float32]  # [k, 2, 3]
 

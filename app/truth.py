@@ -10,7 +10,10 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from app.blocks import Blocks
-from app.motion import ATTITUDE, POSITION, Floats, Quaternion, Trail, Truth
+from app.motion.basics import Floats, Quaternion
+from app.motion.estimate import ATTITUDE, POSITION
+from app.motion.snapshot import Trail
+from app.motion.source import Truth
 from app.rotation import from_yaw, multiply, yaw_of
 from app.settings import Settings
 from app.trail import TrailBuilder

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import NamedTuple
 
-from app.motion import Floats, MotionId, MoverCommand, Role
+from app.motion.basics import Floats, MotionId, Role
+from app.motion.commands import MoverCommand
 
 
 @dataclass(frozen=True)

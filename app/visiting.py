@@ -18,7 +18,9 @@ from app.gestures.steering import STOP, Comfort, Walker, steer
 from app.gestures.stroll import Stroller, Wish
 from app.gestures.words import Decision, standing
 from app.hearing import Hearing, with_threshold
-from app.motion import MotionId, MoverCommand, Role, Sample, role_of
+from app.motion.basics import MotionId, Role, role_of
+from app.motion.commands import MoverCommand
+from app.motion.samples import Sample
 from app.simulate.gestures_live import LiveFeet
 from app.simulate.gestures_options import GestureOptions
 from app.visit import (

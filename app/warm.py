@@ -15,7 +15,9 @@ from app.estimator.sweep import sweep
 from app.estimator.tracker import Tracker
 from app.gestures.default import DefaultDecoder
 from app.gestures.words import FootReading
-from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Role
+from app.motion.basics import Role
+from app.motion.estimate import ROW_WIDTH
+from app.motion.samples import SAMPLE_WIDTH
 from app.rotation import from_yaw, rotate, yaw_of
 from app.settings import BUILT_IN, Settings
 from app.trail import TrailBuilder, coarser

@@ -14,7 +14,7 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.studies.words import Done, Task
 
 Tell = Callable[[int, int], None]

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 BLOCK_M = 36.0
 STREET_M = 12.0  # from kerb to kerb, pavements outside

@@ -16,7 +16,7 @@ import numpy as np
 
 from app.door.access import Access
 from app.door.front import Door
-from app.motion import Role
+from app.motion.basics import Role
 from app.scene import private
 from app.scene.ground import Ground
 from app.scene.page import NED_WXYZ

@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 
 from app.clocks import LiveClock
-from app.motion import Sample
+from app.motion.samples import Sample
 from app.session import Session
 from app.settings import Settings
 from app.simulate.calibration import make_calibration

@@ -13,7 +13,8 @@ import numpy as np
 from app.blocks import Blocks
 from app.estimator import sweep
 from app.estimator.tracker import Tracker, store
-from app.motion import Recording, Sample, Samples
+from app.motion.recording import Recording
+from app.motion.samples import Sample, Samples
 from app.session import Session
 from app.settings import Settings
 from app.sources.opening import open_recording

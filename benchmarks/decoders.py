@@ -8,7 +8,7 @@ from typing import Any
 from app.formats.wire.catalogue import KINDS, Decoder, Kind
 from app.formats.wire.faults import Faults, Line
 from app.formats.wire.talk import Talk
-from app.motion import Sample
+from app.motion.samples import Sample
 from app.simulate.walk import make_walk
 from app.sources.timeline import Timeline
 from benchmarks.figures import Figure, Section

@@ -21,7 +21,8 @@ ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT))
 
 from app.formats.wire.message import encode_binary  # noqa: E402
-from app.motion import Sample, role_of  # noqa: E402
+from app.motion.basics import role_of  # noqa: E402
+from app.motion.samples import Sample  # noqa: E402
 from app.outputs.forwarder import Links, WsSender  # noqa: E402
 from app.session import Session  # noqa: E402
 from app.settings import Settings  # noqa: E402

@@ -14,7 +14,9 @@ from app.gestures.default import DefaultDecoder
 from app.gestures.merge import decode, readings
 from app.gestures.papers import PapersDecoder
 from app.gestures.words import Decision, Decoder
-from app.motion import ATTITUDE, Floats, MotionId, Role, Samples
+from app.motion.basics import Floats, MotionId, Role
+from app.motion.estimate import ATTITUDE
+from app.motion.samples import Samples
 from app.settings import Settings
 from app.simulate.gestures import Bout, SimulatedGestures, simulate
 from app.simulate.gestures_options import GestureOptions

@@ -7,7 +7,7 @@ import time
 from typing import Any, NamedTuple
 
 from app.estimator.tracker import track
-from app.motion import POSITION
+from app.motion.estimate import POSITION
 from app.settings import Settings
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec

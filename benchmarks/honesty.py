@@ -8,7 +8,8 @@ import scipy.io
 from app.blocks import Blocks
 from app.estimator.tracker import Tracker
 from app.estimator.trust import CHI2_95
-from app.motion import SAMPLE_WIDTH, Floats
+from app.motion.basics import Floats
+from app.motion.samples import SAMPLE_WIDTH
 from app.settings import Settings
 from app.sources.files import load
 from benchmarks.measured import DATA

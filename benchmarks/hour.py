@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from benchmarks.client import Client, deaf, health
 from benchmarks.figures import Figure, Section
 from benchmarks.processes import first_line, free_port, rss_bytes, running

@@ -13,7 +13,8 @@ import numpy as np
 
 from app.estimator.smoother import finish
 from app.estimator.tracker import Tracker, store
-from app.motion import Floats, Role, Samples
+from app.motion.basics import Floats, Role
+from app.motion.samples import Samples
 from app.settings import Settings
 from benchmarks.measured import DATA
 

@@ -13,7 +13,9 @@ from typing import NamedTuple, NoReturn
 from app.formats import kept
 from app.formats.journal import Start
 from app.formats.recover import recover
-from app.motion import InputError, Sample, SourceInfo
+from app.motion.basics import InputError
+from app.motion.samples import Sample
+from app.motion.source import SourceInfo
 from app.outputs.recorder import Recorder
 from app.settings import Settings
 from app.simulate.walk import make_walk

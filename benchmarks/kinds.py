@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from app.estimator.tracker import Tracker, store
-from app.motion import Floats, Samples
+from app.motion.basics import Floats
+from app.motion.samples import Samples
 from app.settings import Settings
 from app.simulate.sensors import SensorErrors, read
 from app.simulate.walk import make_walk

@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from benchmarks.client import Frame, messages
 
 Key = tuple[float, ...]

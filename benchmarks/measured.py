@@ -9,7 +9,8 @@ from typing import Any, NamedTuple
 import numpy as np
 import scipy.io
 
-from app.motion import Floats, Samples
+from app.motion.basics import Floats
+from app.motion.samples import Samples
 from app.settings import Settings
 from app.shell import batch
 from app.sources.files import load

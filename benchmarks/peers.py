@@ -12,7 +12,8 @@ from typing import IO
 import imufusion
 import numpy as np
 
-from app.motion import Column, Floats, Samples
+from app.motion.basics import Floats
+from app.motion.samples import Column, Samples
 
 G = 9.80665
 #: As in x-io's Gait-Tracking script: moving is an acceleration beyond 3 m/s², 100 ms before and after too.

@@ -11,7 +11,9 @@ from pathlib import Path
 from app.formats import plain
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
-from app.motion import Landing, Order, RestartHere, Sample, Seek, Stretch
+from app.motion.commands import Order, RestartHere, Seek
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import Sample
 from app.saving import Saver
 from app.session import Session
 from app.settings import Settings

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 #: The path of a densely sampled truth is taken from every so many-th row, or its noise would lengthen it.
 PATH_EVERY = 10

@@ -16,7 +16,10 @@ from pathlib import Path
 import numpy as np
 
 from app.door.access import Access
-from app.motion import ATTITUDE, POSITION, Sample, Snapshot, Status
+from app.motion.estimate import ATTITUDE, POSITION
+from app.motion.samples import Sample
+from app.motion.snapshot import Snapshot
+from app.motion.status import Status
 from app.scene.page import Scene
 from app.session import Session
 from app.settings import Settings

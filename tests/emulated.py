@@ -11,7 +11,8 @@ from typing import Any
 from app.formats.wire import gx1_talk
 from app.formats.wire.catalogue import KINDS
 from app.formats.wire.faults import parse_faults
-from app.motion import Sample, SourceInfo
+from app.motion.samples import Sample
+from app.motion.source import SourceInfo
 from app.shell.emulate import Emulator, Wanted
 from app.sources.opening import open_recording, open_source
 from app.sources.spec import parse_spec

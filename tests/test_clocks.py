@@ -9,7 +9,7 @@ import pytest
 
 from app.clocks import BINS, KnownClock, LiveClock, recorded_line
 from app.formats.wire.ticks import DeviceClock
-from app.motion import ClockLine
+from app.motion.samples import ClockLine
 
 MS = 1_000_000
 BURST_NS = 16 * MS

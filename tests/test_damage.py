@@ -9,7 +9,9 @@ from app.damage import Damage
 from app.formats.mounting import AS_GIVEN
 from app.formats.wire.gx1 import Gx1Decoder, Gx1Encoder, Gx1Setup
 from app.formats.wire.stream import Counters
-from app.motion import Light, Role, Sample, role_of
+from app.motion.basics import Role, role_of
+from app.motion.health import Light
+from app.motion.samples import Sample
 from app.session import Session
 from app.settings import Settings
 

@@ -8,7 +8,7 @@ import json
 import pytest
 
 from app.__main__ import main
-from app.motion import MotionId
+from app.motion.basics import MotionId
 
 SCRIPT = "sim:gestures?script=none:2,forward:5,none:2,turn_ccw:4,none:2&vary=0"
 

@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.hanging import period
-from app.motion import PendulumView
+from app.motion.snapshot import PendulumView
 from app.session import Session
 from app.settings import Settings
 from app.simulate.hanging import HELD_S, make_pendulum

@@ -12,7 +12,9 @@ import pytest
 
 from app.clocks import KnownClock, LiveClock
 from app.health import BINS, Monitor, judge, report
-from app.motion import GaitPhase, Health, Light, Recent, Role, Sample
+from app.motion.basics import GaitPhase, Role
+from app.motion.health import Health, Light, Recent
+from app.motion.samples import Sample
 
 G = 9.80665
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from app import motion as m
 from app.estimator.smoother import finish
+from app.motion.basics import Floats
+from app.motion.commands import LookBack, Order, SetCandidate
+from app.motion.samples import Sample
 from app.session import Session
 from app.settings import BUILT_IN, Settings
 from tests.estimator.walks import estimate, foot, one_by_one, rows_of, table_of
@@ -13,7 +15,7 @@ SAMPLES = foot("strides=8&noise=1&rate_hz=100")
 WALK = one_by_one(SAMPLES)
 
 
-def fed(samples: list[m.Sample], settings: Settings = HINDSIGHT) -> Session:
+def fed(samples: list[Sample], settings: Settings = HINDSIGHT) -> Session:
     session = Session(settings)
     for sample in samples:
         session.take(sample)
@@ -22,12 +24,12 @@ def fed(samples: list[m.Sample], settings: Settings = HINDSIGHT) -> Session:
 
 def halt(session: Session) -> None:
     """A halt, and what the shell does then."""
-    session.apply(m.Order(m.LookBack(), "hindsight", 0))
+    session.apply(Order(LookBack(), "hindsight", 0))
     while (job := session.wanted) is not None:
         session.adopt(job, job.run())
 
 
-def rows(session: Session) -> m.Floats:
+def rows(session: Session) -> Floats:
     return rows_of(session.main.feet["foot"].tracker)
 
 
@@ -69,14 +71,14 @@ def test_only_hindsight_looks_back_and_only_once() -> None:
         assert session.snapshot().main.smoothed_s is None
     session = fed(WALK[:300])
     halt(session)
-    session.apply(m.Order(m.LookBack(), "hindsight", 0))
+    session.apply(Order(LookBack(), "hindsight", 0))
     assert session.wanted is None
 
 
 def test_a_ghost_stays_through_it() -> None:
     session = fed(WALK[:400])
-    session.apply(m.Order(m.SetCandidate((("gait_factor", 40.0),)), "me", 0))
-    session.apply(m.Order(m.LookBack(), "hindsight", 0))
+    session.apply(Order(SetCandidate((("gait_factor", 40.0),)), "me", 0))
+    session.apply(Order(LookBack(), "hindsight", 0))
     assert session.candidate_settings.gait_factor == 40.0
     while (job := session.wanted) is not None:
         session.adopt(job, job.run())

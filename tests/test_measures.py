@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from app.measures import measures
-from app.motion import Link, RecorderState
+from app.motion.source import Link
+from app.motion.status import RecorderState
 from tests.scene import fakes
 
 

@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from app.motion import Order, ResetHeading, RestartHere, Sample
+from app.motion.commands import Order, ResetHeading, RestartHere
+from app.motion.samples import Sample
 from app.rotation import from_yaw, multiply
 from app.session import Session
 from app.settings import Settings

@@ -10,7 +10,11 @@ import pytest
 
 from app.clocks import KnownClock
 from app.health import Monitor, judge
-from app.motion import FootView, GaitPhase, Health, LineState, PreflightView, Role, Sample, Trail
+from app.motion.basics import GaitPhase, Role
+from app.motion.health import Health
+from app.motion.samples import Sample
+from app.motion.snapshot import FootView, Trail
+from app.motion.status import LineState, PreflightView
 from app.preflight import Preflight, sentence
 from app.preflight import told as report
 

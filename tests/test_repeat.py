@@ -9,9 +9,24 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app import motion as m
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
+from app.motion.basics import InputError
+from app.motion.commands import (
+    ApplyCandidate,
+    Command,
+    KeepAs,
+    Order,
+    ReplaceCandidate,
+    ResetHeading,
+    Seek,
+    SetApplyAtOnce,
+    SetCandidate,
+    SwapAB,
+    Undo,
+)
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import Sample
 from app.session import Session
 from app.settings import Settings
 from app.simulate.walk import make_walk
@@ -22,25 +37,25 @@ WALK = {"path": "square", "feet": "2", "noise": "0.3", "seed": "5", "still_s": "
 BEGAN = Settings().with_changes({"gain_swing": 0.07})
 
 
-def order(command: m.Command, number: int) -> m.Order:
-    return m.Order(command, "Ann", 3_000_000_000 * number)
+def order(command: Command, number: int) -> Order:
+    return Order(command, "Ann", 3_000_000_000 * number)
 
 
-def orders() -> dict[int, m.Command]:
+def orders() -> dict[int, Command]:
     """Every kind of order that moves the walk, between samples."""
     return {
-        300: m.SetCandidate((("gain_stance", 0.7),)),
-        400: m.ApplyCandidate(),
-        500: m.SetApplyAtOnce(True),
-        600: m.SetCandidate((("gain_swing", 0.2),)),
-        700: m.KeepAs("A"),
-        720: m.SetCandidate((("gain_swing", 2e9),)),  # refused, and refused again
-        800: m.ReplaceCandidate(Settings(), "profile papers"),
-        900: m.Undo(),
-        1000: m.SwapAB(),
-        1100: m.ResetHeading(),
-        1200: m.SetApplyAtOnce(False),
-        1300: m.SetCandidate((("gain_swing", 0.3),)),
+        300: SetCandidate((("gain_stance", 0.7),)),
+        400: ApplyCandidate(),
+        500: SetApplyAtOnce(True),
+        600: SetCandidate((("gain_swing", 0.2),)),
+        700: KeepAs("A"),
+        720: SetCandidate((("gain_swing", 2e9),)),  # refused, and refused again
+        800: ReplaceCandidate(Settings(), "profile papers"),
+        900: Undo(),
+        1000: SwapAB(),
+        1100: ResetHeading(),
+        1200: SetApplyAtOnce(False),
+        1300: SetCandidate((("gain_swing", 0.3),)),
     }
 
 
@@ -60,8 +75,8 @@ class Work:
             self.session.adopt(job, job.run())
 
 
-def apply(session: Session, given: m.Order) -> None:
-    with contextlib.suppress(m.InputError):
+def apply(session: Session, given: Order) -> None:
+    with contextlib.suppress(InputError):
         session.apply(given)
 
 
@@ -98,24 +113,24 @@ async def replayed(
     session = Session(source.settings or settings)
     work, taken, skipped = Work(session, delay), 0, 0
     async for item in source:
-        if isinstance(item, m.Sample):
+        if isinstance(item, Sample):
             session.take(item)
             taken += 1
             if seek_back and taken == 1250:
-                source.control(m.Seek(0.5))
+                source.control(Seek(0.5))
             if stretches and taken == 30:  # over all orders but the first, and back, and far ahead
-                source.control(m.Seek(9.0))
+                source.control(Seek(9.0))
             if stretches and taken == 700:
-                source.control(m.Seek(3.7))
-                source.control(m.Seek(11.0))
-        elif isinstance(item, m.Stretch):
+                source.control(Seek(3.7))
+                source.control(Seek(11.0))
+        elif isinstance(item, Stretch):
             assert stretches
             session.take_stretch(item)
             taken += len(item)
             skipped += 1
         else:
-            assert not isinstance(item, m.Landing)  # nobody asked for one
-            apply(session, item if isinstance(item, m.Order) else m.Order(item, "replay", 0))
+            assert not isinstance(item, Landing)  # nobody asked for one
+            apply(session, item if isinstance(item, Order) else Order(item, "replay", 0))
         work.do()
     work.do(now=True)
     assert (skipped > 5) == stretches

@@ -12,7 +12,7 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from app import rotation
-from app.motion import Floats, Quaternion, Vector
+from app.motion.basics import Floats, Quaternion, Vector
 
 NEAR = 1e-12
 

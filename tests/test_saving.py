@@ -10,12 +10,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from app import motion as m
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
 from app.formats.reading import read
 from app.formats.recover import recover
 from app.formats.states import read_state
+from app.motion.basics import InputError
+from app.motion.commands import ApplyCandidate, Command, KnowBias, Order, ResetHeading, Seek, SetCandidate
+from app.motion.estimate import Way
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import Sample
 from app.saving import Saver, saved
 from app.session import Session
 from app.settings import BUILT_IN, Settings
@@ -28,7 +32,7 @@ WALK = {"path": "square", "feet": "2", "noise": "0.3", "seed": "5", "duration_s"
 CHUNK = 160
 
 
-def write(settings: Settings, orders: dict[int, m.Command], lost: int = -1) -> tuple[bytes, Session]:
+def write(settings: Settings, orders: dict[int, Command], lost: int = -1) -> tuple[bytes, Session]:
     """A walk recorded as it happens, with an order before some samples; sample ``lost`` is left out."""
     recording = make_walk(WALK).recording
     session, saver, keeper = Session(settings), Saver(), Keeper({"source": "test"}, {}, 10**18, KEY)
@@ -38,7 +42,7 @@ def write(settings: Settings, orders: dict[int, m.Command], lost: int = -1) -> t
     timeline = Timeline(recording)
     for i, sample in enumerate(timeline.cut(0, len(timeline), 0)):
         if i in orders:
-            asked = m.Order(orders[i], "Ann", 7)
+            asked = Order(orders[i], "Ann", 7)
             session.apply(asked)
             keeper.order(session.number, asked)
             work(session)
@@ -71,13 +75,13 @@ async def sought(path: Path, places: list[float], key: bytes, fill: bool) -> tup
     assert source.settings is not None
     session, landed, waiting = Session(source.settings), 0, list(places)
     async for item in source:
-        if isinstance(item, m.Sample):
+        if isinstance(item, Sample):
             session.take(item)
             if waiting and session.number % 50 == 49:
-                source.control(m.Seek(waiting.pop(0)))
-        elif isinstance(item, m.Stretch):
+                source.control(Seek(waiting.pop(0)))
+        elif isinstance(item, Stretch):
             session.take_stretch(item)
-        elif isinstance(item, m.Landing):
+        elif isinstance(item, Landing):
             if session.land(item):
                 landed += 1
                 assert_same_now(session, item)
@@ -89,13 +93,13 @@ async def sought(path: Path, places: list[float], key: bytes, fill: bool) -> tup
                 for stretch in item.steps():
                     session.take_stretch(stretch)
         else:
-            with contextlib.suppress(m.InputError):
-                session.apply(item if isinstance(item, m.Order) else m.Order(item, "replay", 0))
+            with contextlib.suppress(InputError):
+                session.apply(item if isinstance(item, Order) else Order(item, "replay", 0))
         work(session)
     return session, landed
 
 
-def assert_same_now(session: Session, landing: m.Landing) -> None:
+def assert_same_now(session: Session, landing: Landing) -> None:
     """What has landed stands where the walk from its first sample stands, and its trail leads there."""
     whole = Session(session.main.settings)
     whole.main.biases = session.biases
@@ -171,10 +175,10 @@ def test_there_is_a_state_of_each_foot_every_half_minute(walked) -> None:
 
 
 def test_an_estimate_changed_on_the_way_is_landed_in_up_to_there_only(tmp_path: Path) -> None:
-    orders: dict[int, m.Command] = {
-        20_000: m.SetCandidate((("threshold_radps", 0.9),)),
-        20_001: m.ApplyCandidate(),
-        23_000: m.ResetHeading(),
+    orders: dict[int, Command] = {
+        20_000: SetCandidate((("threshold_radps", 0.9),)),
+        20_001: ApplyCandidate(),
+        23_000: ResetHeading(),
     }
     data, session = write(BUILT_IN["papers"], orders)
     path = tmp_path / "walk.mcap"
@@ -189,10 +193,10 @@ def test_an_estimate_changed_on_the_way_is_landed_in_up_to_there_only(tmp_path: 
 
 
 def test_what_was_changed_before_a_seek_is_in_the_state_it_lands_on(tmp_path: Path) -> None:
-    orders: dict[int, m.Command] = {
-        0: m.KnowBias("left", (0.001, -0.002, 0.003), (0.0002, 0.0002, 0.0002), "a test"),
-        900: m.SetCandidate((("threshold_radps", 0.9),)),
-        1_000: m.ApplyCandidate(),
+    orders: dict[int, Command] = {
+        0: KnowBias("left", (0.001, -0.002, 0.003), (0.0002, 0.0002, 0.0002), "a test"),
+        900: SetCandidate((("threshold_radps", 0.9),)),
+        1_000: ApplyCandidate(),
     }
     data, session = write(BUILT_IN["default"], orders)
     path = tmp_path / "walk.mcap"
@@ -235,8 +239,8 @@ def test_a_tracker_goes_on_from_what_was_saved_under_its_settings_only(walked) -
     tracker = session.main.feet["left"].tracker
     state = saved(tracker)
     stretch = Timeline(make_walk(WALK).recording).stretch(0, 100, 0)
-    way = m.Way(0, state.row, np.empty((0, 2, 3), np.float32))
-    landing = m.Landing(stretch, {"left": state}, {"left": way}, lambda: iter(()))
+    way = Way(0, state.row, np.empty((0, 2, 3), np.float32))
+    landing = Landing(stretch, {"left": state}, {"left": way}, lambda: iter(()))
     other = Session(session.main.settings.with_changes({"threshold_radps": 0.33}))
     assert not other.land(landing)
     assert other.number == 0

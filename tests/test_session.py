@@ -12,23 +12,41 @@ import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
-from app import motion as m
 from app.blocks import BLOCK
+from app.motion.basics import Floats, InputError, Role
+from app.motion.commands import (
+    ApplyCandidate,
+    Command,
+    DropCandidate,
+    KeepAs,
+    LookBack,
+    Order,
+    Pause,
+    ReplaceCandidate,
+    ResetHeading,
+    RestartHere,
+    SetApplyAtOnce,
+    SetCandidate,
+    SwapAB,
+    Undo,
+)
+from app.motion.samples import Sample, Samples
+from app.motion.snapshot import Change, Snapshot, Trail
 from app.rotation import from_yaw, rotate, yaw_of
 from app.session import Session
 from app.settings import Settings
 from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of, still, walk
 
 WALK = one_by_one(foot("path=square&noise=1&rate_hz=50"))
-GAIN = m.SetCandidate((("gain_stance", 2.0),))
-OTHER = m.SetCandidate((("threshold_radps", 0.7),))
+GAIN = SetCandidate((("gain_stance", 2.0),))
+OTHER = SetCandidate((("threshold_radps", 0.7),))
 
 
-def order(command: m.Command, who: str = "me") -> m.Order:
-    return m.Order(command, who, 7)
+def order(command: Command, who: str = "me") -> Order:
+    return Order(command, who, 7)
 
 
-def fed(session: Session, samples: Iterable[m.Sample]) -> Session:
+def fed(session: Session, samples: Iterable[Sample]) -> Session:
     for sample in samples:
         session.take(sample)
     return session
@@ -40,17 +58,17 @@ def settle(session: Session) -> None:
         session.adopt(job, job.run())
 
 
-def tell(session: Session, *commands: m.Command) -> None:
+def tell(session: Session, *commands: Command) -> None:
     for command in commands:
         session.apply(order(command))
         settle(session)
 
 
-def main_rows(session: Session, sensor: str = "foot") -> m.Floats:
+def main_rows(session: Session, sensor: str = "foot") -> Floats:
     return rows_of(session.main.feet[sensor].tracker)
 
 
-def assert_main_is(session: Session, chosen: Settings, samples: list[m.Sample], sensor: str = "foot") -> None:
+def assert_main_is(session: Session, chosen: Settings, samples: list[Sample], sensor: str = "foot") -> None:
     """To the bit, what a session would have that had these settings from the start."""
     fresh = fed(Session(chosen), samples)
     assert session.main.settings == chosen
@@ -84,27 +102,27 @@ def test_a_candidate_is_the_whole_walk_under_other_settings_then_live_beside_mai
 
 def test_apply_drop_and_undo() -> None:
     session = fed(Session(PAPERS), WALK[:800])
-    tell(session, GAIN, m.ApplyCandidate())
+    tell(session, GAIN, ApplyCandidate())
     assert session.candidate is None
     assert_main_is(session, Settings(gain_stance=2.0), WALK[:800])
     tell(session, OTHER)
     assert session.candidate_settings == Settings(gain_stance=2.0, threshold_radps=0.7)
-    tell(session, m.DropCandidate())
+    tell(session, DropCandidate())
     assert session.candidate_settings == session.main.settings
-    tell(session, OTHER, m.ApplyCandidate(), m.SetCandidate((("gain_swing", 0.1),)), m.ApplyCandidate())
+    tell(session, OTHER, ApplyCandidate(), SetCandidate((("gain_swing", 0.1),)), ApplyCandidate())
     assert session.snapshot().undo_depth == 3
     gone = []
     for _ in range(4):
         now = session.main.settings
         gone.append((now.gain_stance, now.threshold_radps, now.gain_swing))
-        tell(session, m.Undo())
+        tell(session, Undo())
     assert gone == [(2.0, 0.7, 0.1), (2.0, 0.7, 0.0), (2.0, 1.0, 0.0), (1.05, 1.0, 0.0)]
     assert_main_is(session, PAPERS, WALK[:800])
 
 
 def test_at_once_applies_a_slider_by_itself() -> None:
     session = fed(Session(PAPERS), WALK[:500])
-    tell(session, GAIN, m.SetApplyAtOnce(True))
+    tell(session, GAIN, SetApplyAtOnce(True))
     assert session.main.settings.gain_stance == 2.0
     tell(session, OTHER)
     assert session.main.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
@@ -113,55 +131,55 @@ def test_at_once_applies_a_slider_by_itself() -> None:
 
 def test_a_and_b_swap() -> None:
     session = fed(Session(PAPERS), WALK[:500])
-    tell(session, m.SwapAB(), m.KeepAs("A"), GAIN, m.ApplyCandidate(), m.KeepAs("B"))
+    tell(session, SwapAB(), KeepAs("A"), GAIN, ApplyCandidate(), KeepAs("B"))
     for slot, gain in (("A", 1.05), ("B", 2.0), ("A", 1.05)):
-        tell(session, m.SwapAB())
+        tell(session, SwapAB())
         assert (session.snapshot().slot_now, session.main.settings.gain_stance) == (slot, gain)
-    tell(session, OTHER, m.ApplyCandidate())
+    tell(session, OTHER, ApplyCandidate())
     assert session.snapshot().slot_now is None
 
 
 def test_every_apply_is_logged_with_who_what_and_when() -> None:
     session = fed(Session(PAPERS), WALK[:100])
-    session.apply(m.Order(GAIN, "browser 2", 11))
+    session.apply(Order(GAIN, "browser 2", 11))
     settle(session)
-    session.apply(m.Order(m.ApplyCandidate(), "browser 3", 12))
-    assert session.snapshot().changes == (m.Change(102, 12, "browser 3", "applied: gain_stance 1.05 → 2"),)
+    session.apply(Order(ApplyCandidate(), "browser 3", 12))
+    assert session.snapshot().changes == (Change(102, 12, "browser 3", "applied: gain_stance 1.05 → 2"),)
 
 
 @pytest.mark.parametrize(
     "command",
     [
-        m.SetCandidate((("gain_stance", math.nan),)),
-        m.SetCandidate((("gain_stance", -1.0),)),
-        m.SetCandidate((("gain_stance", math.inf),)),
-        m.SetCandidate((("gain_stance", "much"),)),
-        m.SetCandidate((("no such", 1.0),)),
-        m.KeepAs("C"),
-        m.Pause(True),
+        SetCandidate((("gain_stance", math.nan),)),
+        SetCandidate((("gain_stance", -1.0),)),
+        SetCandidate((("gain_stance", math.inf),)),
+        SetCandidate((("gain_stance", "much"),)),
+        SetCandidate((("no such", 1.0),)),
+        KeepAs("C"),
+        Pause(True),
     ],
 )
-def test_an_impossible_order_changes_nothing(command: m.Command) -> None:
+def test_an_impossible_order_changes_nothing(command: Command) -> None:
     session = fed(Session(PAPERS), WALK[:100])
-    with pytest.raises(m.InputError):
+    with pytest.raises(InputError):
         session.apply(order(command))
     assert (session.wanted, session.candidate, session.main.settings) == (None, None, PAPERS)
 
 
 # --- what comes back does not depend on when --------------------------------------------------------
 
-COMMANDS: list[m.Command] = [
+COMMANDS: list[Command] = [
     GAIN,
     OTHER,
-    m.SetCandidate((("magnetometer", True),)),
-    m.ApplyCandidate(),
-    m.DropCandidate(),
-    m.Undo(),
-    m.KeepAs("A"),
-    m.SwapAB(),
-    m.SetApplyAtOnce(True),
-    m.RestartHere(),
-    m.ReplaceCandidate(PAPERS, "reset"),
+    SetCandidate((("magnetometer", True),)),
+    ApplyCandidate(),
+    DropCandidate(),
+    Undo(),
+    KeepAs("A"),
+    SwapAB(),
+    SetApplyAtOnce(True),
+    RestartHere(),
+    ReplaceCandidate(PAPERS, "reset"),
 ]
 
 
@@ -212,7 +230,7 @@ def test_any_orders_leave_a_session_whole(script: Script) -> None:
     assert snapshot.pending is False
     for store in session.stores.values():
         matrix = store.samples.table(0, store.samples.end)
-        samples = m.Samples("foot", m.Role.FOOT, 0, matrix, np.empty(0, np.uint16))
+        samples = Samples("foot", Role.FOOT, 0, matrix, np.empty(0, np.uint16))
         assert main_rows(session).tobytes() == rows_of(estimate(samples, session.main.settings)).tobytes()
 
 
@@ -244,28 +262,28 @@ def test_an_outdated_result_is_shown_meanwhile_and_after_a_restart_let_go() -> N
     assert session.candidate.settings == first.settings
     assert session.candidate_settings == second.settings
     assert session.wanted is second
-    session.apply(order(m.RestartHere()))
+    session.apply(order(RestartHere()))
     session.adopt(second, second.run())
     assert session.main.feet == {}
 
 
 def test_an_apply_under_way_survives_a_slider_and_a_restart() -> None:
     session = fed(Session(PAPERS), WALK[:300])
-    for command in (GAIN, m.ApplyCandidate(), OTHER):
+    for command in (GAIN, ApplyCandidate(), OTHER):
         session.apply(order(command))
     settle(session)
     assert session.main.settings == Settings(gain_stance=2.0)
     assert session.candidate is not None
     assert session.candidate.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
-    for later in (m.ApplyCandidate(), m.SetCandidate((("gain_swing", 0.5),)), m.RestartHere()):
+    for later in (ApplyCandidate(), SetCandidate((("gain_swing", 0.5),)), RestartHere()):
         session.apply(order(later))
     assert session.main.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
     assert session.candidate_settings.gain_swing == 0.5
 
 
 def test_a_sensor_that_never_delivered_is_no_foot() -> None:
-    session = fed(Session(PAPERS), [m.Sample("left", 0, 0, 0, (math.nan, 0, 0), (0, 0, 0)), *WALK[:100]])
-    tell(session, GAIN, m.ApplyCandidate(), m.ResetHeading())
+    session = fed(Session(PAPERS), [Sample("left", 0, 0, 0, (math.nan, 0, 0), (0, 0, 0)), *WALK[:100]])
+    tell(session, GAIN, ApplyCandidate(), ResetHeading())
     snapshot = session.snapshot()
     assert [f.sensor for f in snapshot.main.feet] == ["foot"]
     assert snapshot.health["left"].dropped == {"not a finite number": 1}
@@ -280,20 +298,20 @@ def test_reset_heading_points_the_toe_north_and_turns_the_whole_walk(magnetomete
     before = main_rows(session)
     yaw = yaw_of(tuple(before[-1, 6:10].tolist()))
     assert abs(yaw) > 0.5
-    tell(session, m.ResetHeading())
+    tell(session, ResetHeading())
     after = main_rows(session)
     assert yaw_of(tuple(after[-1, 6:10].tolist())) == pytest.approx(0.0, abs=1e-6)
     turn = from_yaw(-yaw)
     for a, b in zip(before[::100], after[::100], strict=True):
         assert rotate(turn, tuple(a[:3])) == pytest.approx(tuple(b[:3]), abs=1e-6)
     fed(session, WALK[900:1000])
-    tell(session, m.ResetHeading())
+    tell(session, ResetHeading())
     assert yaw_of(tuple(main_rows(session)[-1, 6:10].tolist())) == pytest.approx(0.0, abs=1e-6)
 
 
 def test_restart_forgets_the_walk_and_keeps_settings_and_sliders() -> None:
     session = fed(Session(Settings(gain_stance=2.0)), WALK[:500])
-    tell(session, OTHER, m.RestartHere())
+    tell(session, OTHER, RestartHere())
     snapshot = session.snapshot()
     assert (snapshot.epoch, snapshot.main.feet, snapshot.t_s) == (1, (), 0.0)
     assert snapshot.candidate_settings.threshold_radps == 0.7
@@ -304,7 +322,7 @@ def test_restart_forgets_the_walk_and_keeps_settings_and_sliders() -> None:
             for s in WALK[500:700]
         ]
     )
-    samples = m.Samples("foot", m.Role.FOOT, 0, matrix, np.empty(0, np.uint16))
+    samples = Samples("foot", Role.FOOT, 0, matrix, np.empty(0, np.uint16))
     assert main_rows(session).tobytes() == rows_of(estimate(samples, gain_stance=2.0)).tobytes()
     assert session.candidate is not None
 
@@ -328,7 +346,7 @@ def test_replaying_the_log_repeats_it_to_the_bit() -> None:
 # --- snapshots --------------------------------------------------------------------------------------
 
 
-def frozen(snapshot: m.Snapshot) -> list[bytes]:
+def frozen(snapshot: Snapshot) -> list[bytes]:
     feet = [f for view in (snapshot.main, snapshot.candidate) if view for f in view.feet]
     trails = [f.trail for f in feet] + list(snapshot.truth.values())
     arrays: list[Any] = [
@@ -345,7 +363,7 @@ def test_a_snapshot_never_changes_afterwards() -> None:
         if i == 400:
             tell(session, GAIN)
         if i == 900:
-            tell(session, m.ApplyCandidate(), OTHER)
+            tell(session, ApplyCandidate(), OTHER)
         if i % 50 == 0:
             snapshot = session.snapshot()
             held.append((snapshot, frozen(snapshot), copy.copy(snapshot.health["foot"].dropped)))
@@ -373,11 +391,11 @@ def test_two_feet_have_each_its_own_walk() -> None:
     feet = [one_by_one(foot(query, i)) for i in (0, 1)]
     mixed = sorted([*feet[0], *feet[1]], key=lambda s: s.device_ns)
     session = fed(Session(PAPERS, truth=walk(query).truth), mixed)
-    tell(session, GAIN, m.ApplyCandidate())
+    tell(session, GAIN, ApplyCandidate())
     snapshot = session.snapshot()
     assert [(f.sensor, f.role) for f in snapshot.main.feet] == [
-        ("left", m.Role.LEFT),
-        ("right", m.Role.RIGHT),
+        ("left", Role.LEFT),
+        ("right", Role.RIGHT),
     ]
     for view in snapshot.main.feet:
         assert view.strides == walk(query).feet[view.sensor].strides
@@ -423,7 +441,7 @@ def test_the_cost_of_a_frame_does_not_grow_with_the_walk() -> None:
         assert len(snapshot.main.feet[0].footprints) <= 40
 
 
-def budgeted(budget: int, samples: Iterable[m.Sample], settings_: Settings = PAPERS) -> Session:
+def budgeted(budget: int, samples: Iterable[Sample], settings_: Settings = PAPERS) -> Session:
     return fed(Session(settings_, budget_bytes=budget), samples)
 
 
@@ -454,19 +472,19 @@ def test_after_the_cut_a_candidate_goes_on_from_mains_checkpoint() -> None:
     start = session.stores["foot"].samples.start
     assert start
     before = session.snapshot().main.feet[0]
-    tell(session, m.SetCandidate((("gain_swing", 0.001),)))
+    tell(session, SetCandidate((("gain_swing", 0.001),)))
     assert session.candidate is not None
     ghost = session.candidate.feet["foot"].tracker
     assert ghost.rows.start == start
     assert rows_of(ghost)[0, :3] == pytest.approx(main_rows(session)[0, :3], abs=1e-3)
     assert ghost.stride_count == before.strides
-    tell(session, m.ApplyCandidate())
+    tell(session, ApplyCandidate())
     after = session.snapshot().main.feet[0]
     assert after.strides == before.strides
     assert after.distance_m == pytest.approx(before.distance_m, rel=0.01)
 
 
-def length_of(trail: m.Trail) -> float:
+def length_of(trail: Trail) -> float:
     segments = np.concatenate([*(p.segments for p in trail.pieces), trail.growing, trail.provisional])
     return float(np.linalg.norm(segments[:, 1] - segments[:, 0], axis=1).sum())
 
@@ -474,10 +492,10 @@ def length_of(trail: m.Trail) -> float:
 def test_the_trail_before_the_cut_survives_an_apply_and_turns_with_it() -> None:
     session = budgeted(ROOM, LONG)
     before = session.snapshot().main.feet[0].trail
-    tell(session, m.SetCandidate((("gain_stance", 1.06),)), m.ApplyCandidate())
+    tell(session, SetCandidate((("gain_stance", 1.06),)), ApplyCandidate())
     after = session.snapshot().main.feet[0].trail
     assert length_of(after) == pytest.approx(length_of(before), rel=0.05)
-    tell(session, m.ResetHeading())
+    tell(session, ResetHeading())
     yaw = session.main.settings.start_heading_rad
     turned = session.snapshot().main.feet[0].trail
     assert length_of(turned) == pytest.approx(length_of(after), rel=0.01)
@@ -501,7 +519,7 @@ def test_a_result_that_comes_after_blocks_have_gone_is_the_same(late: int) -> No
     ghost, store = session.candidate.feet["foot"].tracker, session.stores["foot"].samples
     assert (ghost.rows.start, ghost.rows.end) == (store.start, store.end)
     assert set(session.main.bases()) == {"foot"}
-    tell(session, m.ApplyCandidate(), OTHER, m.ApplyCandidate())
+    tell(session, ApplyCandidate(), OTHER, ApplyCandidate())
     assert session.main.feet["foot"].tracker.rows.start == store.start
     fed(session, LONG[30_000 + late :])
     assert np.isfinite(main_rows(session)).all()
@@ -524,14 +542,14 @@ def test_one_drag_is_one_step_to_undo() -> None:
         ("b", 2.0, 3 * 10**8),
         ("b", 2.5, 9 * 10**9),
     ]
-    tell(session, m.SetApplyAtOnce(True))
+    tell(session, SetApplyAtOnce(True))
     depths = []
     for who, gain, host_ns in moves:
-        session.apply(m.Order(m.SetCandidate((("gain_stance", gain),)), who, host_ns))
+        session.apply(Order(SetCandidate((("gain_stance", gain),)), who, host_ns))
         settle(session)
         depths.append(session.snapshot().undo_depth)
     assert depths == [1, 1, 1, 2, 3]
-    tell(session, m.Undo(), m.Undo())
+    tell(session, Undo(), Undo())
     assert session.main.settings.gain_stance == 0.7
 
 
@@ -542,7 +560,7 @@ def test_two_feet_in_hindsight_have_one_heading_and_the_page_is_told() -> None:
     def looked_back() -> Session:
         session = fed(Session(Settings(estimator="kalman", hindsight=True)), both)
         assert not session.snapshot().main.linked
-        tell(session, m.LookBack())
+        tell(session, LookBack())
         return session
 
     once, again = looked_back(), looked_back()
@@ -555,5 +573,5 @@ def session_of_one() -> Session:
     session = fed(
         Session(Settings(estimator="kalman", hindsight=True)), one_by_one(foot("strides=6&rate_hz=50"))
     )
-    tell(session, m.LookBack())
+    tell(session, LookBack())
     return session

@@ -9,8 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app import motion as m
 from app.blocks import BLOCK
+from app.motion.commands import Order, SetCandidate
 from app.session import Session
 from app.settings import Settings
 from app.simulate.walk import make_walk
@@ -44,7 +44,7 @@ def in_stretches(edges: list[int], budget: int) -> Session:
 
 
 def tell(session: Session, at: int) -> None:
-    session.apply(m.Order(m.SetCandidate((("gain_stance", 0.5 + at / len(LINE)),)), "me", 0))
+    session.apply(Order(SetCandidate((("gain_stance", 0.5 + at / len(LINE)),)), "me", 0))
     while (job := session.wanted) is not None:
         session.adopt(job, job.run())
 

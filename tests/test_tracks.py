@@ -10,7 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.blocks import BLOCK
-from app.motion import Role, Sample, Vector
+from app.motion.basics import Role, Vector
+from app.motion.samples import Sample
 from app.settings import Settings
 from app.tracks import SensorStore, Track
 from tests.estimator.walks import foot, one_by_one, rows_of

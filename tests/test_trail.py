@@ -9,7 +9,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app.motion import Floats, Trail
+from app.motion.basics import Floats
+from app.motion.snapshot import Trail
 from app.trail import APART_M, PIECE, PIECES, SLEEVE, TOLERANCES_M, TrailBuilder, coarser, segments_of
 
 

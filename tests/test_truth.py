@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from app.motion import Order, RestartHere
+from app.motion.commands import Order, RestartHere
 from app.rotation import pitch_of, yaw_of
 from app.session import Session
 from app.settings import Settings

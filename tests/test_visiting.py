@@ -8,7 +8,8 @@ import math
 import pytest
 
 from app.gestures.steering import Comfort
-from app.motion import MotionId, Sample
+from app.motion.basics import MotionId
+from app.motion.samples import Sample
 from app.simulate.gestures_live import LiveFeet
 from app.simulate.gestures_options import GestureOptions
 from app.visit import ChooseDecoder, GoOn, Halt, NextVisitor, SetUp, Steer, Switch, Tune, Visit

@@ -26,7 +26,7 @@ with atheris.instrument_imports(include=["app.formats"]):
     from app.formats.wire.catalogue import KINDS, Decoder
     from app.formats.wire.talk import Talk
 
-from app.motion import Sample
+from app.motion.samples import Sample
 
 KEPT = 20_000  # bytes: the longest packet, and a talk's longest answer
 DEVICES = tuple(KINDS)

@@ -11,7 +11,7 @@ from urllib.parse import parse_qsl
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
 from app.formats.plain import encode
-from app.motion import Recording
+from app.motion.recording import Recording
 from app.settings import Settings
 from app.simulate.walk import make_walk
 from app.sources.timeline import Timeline

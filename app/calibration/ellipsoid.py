@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import least_squares
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 
 def fit(readings: Floats, length: float, skew: bool) -> tuple[Floats, Floats, float]:

@@ -12,7 +12,9 @@ from app.calibration import ellipsoid, report, turns
 from app.calibration.steps import FIELD_STEPS, STEPS, Step, pose_words
 from app.calibration.still import Pose, Stillness
 from app.calibration.words import Calibration, Correction, correction
-from app.motion import GAP_NS, Floats, GuideView, Sample
+from app.motion.basics import Floats
+from app.motion.samples import GAP_NS, Sample
+from app.motion.status import GuideView
 
 HOLD_S = 1.5
 #: The axis may lean so far and still be called down: the table need not be level to a degree.

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 
 def null(highest: Floats, lowest: Floats) -> Floats:

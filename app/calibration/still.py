@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from app.motion import GAP_NS, Sample, Vector
+from app.motion.basics import Vector
+from app.motion.samples import GAP_NS, Sample
 
 #: Further from the mean so far than this, it moves: ten times the noise of the papers' sensor.
 FORCE_MPS2, RATE_RADPS = 0.35, 0.08

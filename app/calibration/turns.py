@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.optimize import least_squares
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 
 class Turn(NamedTuple):

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.motion import Floats, InputError, Sample, Vector
+from app.motion.basics import Floats, InputError, Vector
+from app.motion.samples import Sample
 
 Matrix = tuple[Vector, Vector, Vector]
 ONE: Matrix = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))

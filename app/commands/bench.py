@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from app.commands.shared import Commands, add_json
-from app.motion import InputError
+from app.motion.basics import InputError
 
 BENCH = Path(__file__).resolve().parent.parent.parent / "benchmarks" / "bench.py"
 

@@ -8,7 +8,8 @@ import sys
 from pathlib import Path
 
 from app.commands.shared import Commands, add_json
-from app.motion import GuideView, InputError
+from app.motion.basics import InputError
+from app.motion.status import GuideView
 
 
 def add(commands: Commands) -> None:

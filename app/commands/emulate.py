@@ -8,7 +8,7 @@ from app.commands.shared import Commands
 from app.formats.mounting import parse_axes
 from app.formats.wire.catalogue import KINDS
 from app.formats.wire.faults import FAULTS, parse_faults
-from app.motion import InputError
+from app.motion.basics import InputError
 
 ABOUT = (
     "Be a sensor: serve a recording or a simulation on a new pseudo-terminal, in the sensor's own protocol, "

@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 
 from app.commands.shared import Commands, tell, token_from
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def add(commands: Commands) -> None:

@@ -6,7 +6,7 @@ import argparse
 import re
 
 from app.commands.shared import Commands, add_door, door_options, tell
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def add(commands: Commands) -> None:

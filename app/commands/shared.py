@@ -15,7 +15,7 @@ from typing import NoReturn, Protocol
 from app.door.access import Access, Certificate, is_loopback, made_token
 from app.door.addresses import everything
 from app.home import profiles
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.settings import Settings, parse
 
 log = logging.getLogger(__name__)

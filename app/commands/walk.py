@@ -14,7 +14,7 @@ from app.commands.shared import (
     settings_of,
     tell,
 )
-from app.motion import InputError
+from app.motion.basics import InputError
 
 DEMO = Path(__file__).parent.parent.parent / "recordings" / "demo.csv"
 

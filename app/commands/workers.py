@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 _BAR = 30
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NamedTuple
 from urllib.parse import quote
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 class Visitor(StrEnum):

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 
 from app.door.counters import Counters
-from app.motion import Measure
+from app.motion.door import Measure
 
 CONTENT_TYPE = "text/plain; version=0.0.4"
 _WORDS = {

@@ -22,7 +22,7 @@ from aiohttp import hdrs, web
 from app.door.access import Visitor
 from app.door.upstream import VISITOR, say
 from app.formats.names import file_name
-from app.motion import InputError
+from app.motion.basics import InputError
 
 log = logging.getLogger(__name__)
 

@@ -13,7 +13,7 @@ from typing import Annotated, Any, NamedTuple
 
 import msgspec
 
-from app.motion import GuiRule
+from app.motion.door import GuiRule
 
 #: Messages that viser's page can send and we don't let through, by name so that they are counted.
 REFUSED_TYPES = frozenset({

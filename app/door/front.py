@@ -24,7 +24,7 @@ from app.door.hand_in import HandIn
 from app.door.ingest import Ingest, Taker
 from app.door.listening import bind
 from app.door.service import Service, Told
-from app.motion import GuiRule, Measure
+from app.motion.door import GuiRule, Measure
 
 log = logging.getLogger(__name__)
 

@@ -11,7 +11,8 @@ from aiohttp import hdrs, web
 
 from app.door.access import Visitor
 from app.door.upstream import VISITOR, say
-from app.motion import HAND_IN, InputError
+from app.motion.basics import InputError
+from app.motion.door import HAND_IN
 
 
 @dataclass

@@ -16,7 +16,7 @@ from app.door.access import Access, is_loopback
 from app.door.addresses import numeric
 from app.door.counters import Counters
 from app.door.upstream import SOCKET_BYTES
-from app.motion import InputError
+from app.motion.basics import InputError
 
 log = logging.getLogger(__name__)
 

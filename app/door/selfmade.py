@@ -15,7 +15,7 @@ from cryptography.x509.oid import ExtendedKeyUsageOID, NameOID
 
 from app.door.access import Certificate, is_ip
 from app.door.tls import context
-from app.motion import InputError
+from app.motion.basics import InputError
 
 VALID = datetime.timedelta(days=397)  # browsers believe no longer ones
 RENEW = datetime.timedelta(days=7)

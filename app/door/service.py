@@ -25,7 +25,7 @@ from app.door.hand_in import HandIn
 from app.door.ingest import Ingest
 from app.door.listening import HEAD_SECONDS, Reception
 from app.door.upstream import VISITOR, Upstream, open_session, say, say_starting
-from app.motion import Measure
+from app.motion.door import Measure
 
 log = logging.getLogger(__name__)
 # aiohttp would log the first line of a request that it cannot read, token and all.

@@ -7,7 +7,7 @@ import ssl
 from pathlib import Path
 
 from app.door.access import Certificate
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def context(certificate: Certificate) -> ssl.SSLContext:

@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 
 from app.compiled import kernel
-from app.motion import Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
 from app.rotation import conjugate, exponential, multiply, normalise, rotate
 
 #: Below this cosine of the pitch roll is undefined; the toe points straight up or down.

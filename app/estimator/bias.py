@@ -6,7 +6,7 @@ import numpy as np
 
 from app.estimator.standing import PRIOR_RADPS
 from app.estimator.tracker import Tracker
-from app.motion import GyroBias
+from app.motion.samples import GyroBias
 
 #: A bias is worth remembering when each axis is surer than this, half of what is known of any gyro, rad/s.
 MOST_DOUBT_RADPS = 0.5 * PRIOR_RADPS

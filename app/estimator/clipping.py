@@ -9,7 +9,7 @@ from __future__ import annotations
 from app.compiled import kernel
 from app.estimator.covariance import add_turn_about
 from app.estimator.kalman_state import KalmanState
-from app.motion import Vector
+from app.motion.basics import Vector
 from app.rotation import exponential, multiply, normalise, rotate
 
 FIRST_RANGE_RADPS = 8.727

@@ -13,7 +13,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import ATTITUDE, Column, Compass, Floats
+from app.motion.basics import Floats
+from app.motion.estimate import ATTITUDE, Compass
+from app.motion.samples import Column
 
 #: So many footprints are judged together, and they must span so many metres.
 FOOTPRINTS, SPAN_M = 8, 4.0

@@ -8,7 +8,7 @@ from app.compiled import kernel
 from app.estimator import state as s
 from app.estimator.gait import STANCE, SWING
 from app.estimator.strapdown import without_bias
-from app.motion import Floats
+from app.motion.basics import Floats
 
 
 class Event(IntEnum):

@@ -7,7 +7,7 @@ The errors (true = exp(δθ) ⊗ q, v + δv, p + δp, b + δb) obey, with f the 
 from __future__ import annotations
 
 from app.compiled import kernel
-from app.motion import Floats, Quaternion, Vector
+from app.motion.basics import Floats, Quaternion, Vector
 from app.rotation import rotate
 
 

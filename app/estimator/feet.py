@@ -19,7 +19,8 @@ import numpy as np
 from app.blocks import Blocks
 from app.estimator.kalman_state import turn_about_down
 from app.estimator.tracker import Tracker
-from app.motion import Column, Floats, Role
+from app.motion.basics import Floats, Role
+from app.motion.samples import Column
 
 #: Feet stand so far apart, side by side, when a walk begins (as they are drawn).
 BESIDE_M = 0.2

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.compiled import kernel
-from app.motion import GaitPhase
+from app.motion.basics import GaitPhase
 
 STANCE = float(GaitPhase.STANCE)
 SWING = float(GaitPhase.SWING)

@@ -40,7 +40,7 @@ from app.estimator.kalman_state import (
 )
 from app.estimator.papers import Reading
 from app.estimator.standing import begin_bias, begin_window, find_level, keep_standing, learn_bias
-from app.motion import Vector
+from app.motion.basics import Vector
 from app.rotation import exponential, from_yaw, multiply, normalise, rotate, yaw_of
 
 #: Noise of the specific force and of the rate, as they are integrated: (m/s)/√s and rad/√s.

@@ -15,7 +15,7 @@ from app.estimator.kalman import step
 from app.estimator.kalman_state import RING, RING_P, RING_Q, KalmanState
 from app.estimator.papers import reading_at
 from app.estimator.state import Record
-from app.motion import Floats, Quaternion
+from app.motion.basics import Floats, Quaternion
 from app.rotation import exponential, multiply, normalise
 
 _MOVED, _START, _END = int(Event.EPSILON), int(Event.START), int(Event.END)

@@ -12,7 +12,8 @@ from enum import IntEnum
 import numpy as np
 
 from app.estimator.state import Record, dtype_of
-from app.motion import Floats, GyroBias
+from app.motion.basics import Floats
+from app.motion.samples import GyroBias
 from app.settings import Settings
 
 #: Samples that the trailing windows may hold: 50 ms at 2560 Hz.

@@ -7,7 +7,7 @@ import numpy as np
 from app.estimator.methods import METHODS
 from app.estimator.strides import Contact
 from app.estimator.tracker import Checkpoint, Tracker
-from app.motion import ROW_WIDTH, Saved
+from app.motion.estimate import ROW_WIDTH, Saved
 from app.settings import Settings
 
 

@@ -10,7 +10,9 @@ from app.estimator import corrections, kalman_run, kalman_state, papers_run, res
 from app.estimator.gait import SWING
 from app.estimator.state import Record
 from app.estimator.trust import trust_of
-from app.motion import Floats, GyroBias, Trust
+from app.motion.basics import Floats
+from app.motion.estimate import Trust
+from app.motion.samples import GyroBias
 from app.rotation import yaw_of
 from app.settings import Settings
 

@@ -18,7 +18,7 @@ from app.estimator.gait import STANCE, SWING, gait_phase
 from app.estimator.rest import begin_rest, rest
 from app.estimator.state import Nav, State
 from app.estimator.strapdown import bias_of_swing, motion_acceleration, trapezoid, without_bias
-from app.motion import Floats, Quaternion, Vector
+from app.motion.basics import Floats, Quaternion, Vector
 from app.rotation import from_yaw, multiply, yaw_of
 
 

@@ -8,7 +8,7 @@ from app.estimator.corrections import correct
 from app.estimator.papers import reading_at, step
 from app.estimator.state import Record, State
 from app.estimator.strapdown import bias_of_swing
-from app.motion import Floats
+from app.motion.basics import Floats
 
 
 @kernel

@@ -21,7 +21,9 @@ from app.estimator.kalman_state import PARTS, KalmanState
 from app.estimator.papers import reading_at
 from app.estimator.state import Record
 from app.estimator.tracker import Tracker
-from app.motion import Column, Floats, RowColumn
+from app.motion.basics import Floats
+from app.motion.estimate import RowColumn
+from app.motion.samples import Column
 from app.rotation import conjugate, exponential, rotate
 
 #: Columns of a trace: what happened; Δt; q at the half step; force in n; for each of three measurements

@@ -15,7 +15,7 @@ from app.compiled import kernel
 from app.estimator.detectors import WALKING
 from app.estimator.kalman_state import GYRO_AT, KalmanState
 from app.estimator.state import LEVEL_FOUND, RESTING
-from app.motion import Vector
+from app.motion.basics import Vector
 
 #: Still is a statistic below this; after so many seconds without level it doubles every second.
 STILL, PATIENCE_S = 30.0, 2.0

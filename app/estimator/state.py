@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion import GAP_NS
+from app.motion.samples import GAP_NS
 from app.settings import Settings
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from app.compiled import kernel
-from app.motion import Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
 from app.rotation import rotate
 
 

@@ -9,7 +9,8 @@ import numpy as np
 
 from app.compiled import kernel
 from app.estimator.corrections import Event
-from app.motion import Floats, Stride, Vector
+from app.motion.basics import Floats, Vector
+from app.motion.estimate import Stride
 from app.rotation import yaw_of
 
 _START, _END = int(Event.START), int(Event.END)

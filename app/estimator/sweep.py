@@ -20,7 +20,8 @@ from app.estimator.papers import aid, leave_segment, level, navigate, observe, r
 from app.estimator.resume import resume
 from app.estimator.state import NAV, Record
 from app.estimator.tracker import Checkpoint
-from app.motion import Floats, InputError, Sweep
+from app.motion.basics import Floats, InputError
+from app.motion.estimate import Sweep
 from app.settings import Settings
 
 #: The grid "Find gains" looks at: k_s and k_d in 1/s.

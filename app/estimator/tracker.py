@@ -13,7 +13,9 @@ from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
 from app.estimator.strides import Contact, lift_above_line, stride_to, turned
-from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, GyroBias, Samples, Stride, Trust
+from app.motion.basics import Floats
+from app.motion.estimate import ROW_WIDTH, Stride, Trust
+from app.motion.samples import SAMPLE_WIDTH, GyroBias, Samples
 from app.rotation import yaw_of
 from app.settings import Settings
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from app.estimator.state import Record
-from app.motion import Trust
+from app.motion.estimate import Trust
 
 #: A χ² of two parts is below this in 95 of 100 cases.
 CHI2_95 = 5.991

@@ -9,7 +9,7 @@ import math
 import struct
 from functools import cache
 
-from app.motion import Floats, Quaternion, Vector
+from app.motion.basics import Floats, Quaternion, Vector
 
 _HEADER = """
 ================================================================================

@@ -10,7 +10,8 @@ from dataclasses import replace
 import numpy as np
 
 from app.formats.raw import NO_STAMP, RawFoot
-from app.motion import GAP_NS, SAMPLE_WIDTH, Floats, InputError, Ints, Samples, role_of
+from app.motion.basics import Floats, InputError, Ints, role_of
+from app.motion.samples import GAP_NS, SAMPLE_WIDTH, Samples
 
 NOT_FINITE = "not a finite number"
 REPEATED = "repeated time"

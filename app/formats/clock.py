@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from app.formats.raw import even_stamps, whole_ns
 from app.formats.table import nanoseconds
-from app.motion import Floats, InputError, Ints
+from app.motion.basics import Floats, InputError, Ints
 
 _EPOCH_NS = 1e16  # a time above this is in nanoseconds: as seconds it would be 300 million years
 _ROUND = 0.005

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.formats.raw import Parsed, RawFoot, even_stamps
 from app.formats.table import Converter, Head, floats, nanoseconds, read_columns
-from app.motion import Floats, InputError, Ints
+from app.motion.basics import Floats, InputError, Ints
 
 RATE_HZ = 204.8
 

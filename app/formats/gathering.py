@@ -14,7 +14,7 @@ import numpy as np
 
 from app.formats import mcap
 from app.formats.records import MESSAGE, At, last_doubles, tables
-from app.motion import Floats, Ints
+from app.motion.basics import Floats, Ints
 
 #: Bytes of records looked through at once: many chunks are small.
 _TOGETHER = 8 * 2**20

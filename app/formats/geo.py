@@ -10,7 +10,7 @@ from xml.sax.saxutils import escape
 
 import numpy as np
 
-from app.motion import Floats, InputError
+from app.motion.basics import Floats, InputError
 
 _A, _E2 = 6378137.0, 6.69437999014e-3  # WGS 84
 

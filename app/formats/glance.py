@@ -6,7 +6,9 @@ from collections.abc import Callable
 
 from app.formats import keeping, mcap
 from app.formats.states import joined, read_way
-from app.motion import Outline, Role, Way, role_of
+from app.motion.basics import Role, role_of
+from app.motion.estimate import Way
+from app.motion.source import Outline
 
 #: Bytes of a file from an offset on: (offset, count) → bytes, fewer at its end.
 ReadAt = Callable[[int, int], bytes]

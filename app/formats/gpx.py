@@ -11,7 +11,8 @@ from xml.parsers import expat
 
 import numpy as np
 
-from app.motion import Floats, InputError, Reference
+from app.motion.basics import Floats, InputError
+from app.motion.status import Reference
 
 _A, _E2 = 6378137.0, 6.69437999014e-3  # WGS 84
 MOST_POINTS = 1_000_000

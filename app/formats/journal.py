@@ -7,7 +7,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, fields
 from typing import Any, NamedTuple, get_args
 
-from app.motion import KnowBias, Order, ReplaceCandidate, SessionCommand, SetCandidate, Vector
+from app.motion.basics import Vector
+from app.motion.commands import KnowBias, Order, ReplaceCandidate, SessionCommand, SetCandidate
 from app.settings import Settings
 
 #: No gyro is so far off.

@@ -12,7 +12,10 @@ from typing import Any, NamedTuple
 
 from app.formats import cdr, journal, states
 from app.formats.mcap import Writer
-from app.motion import Order, Quaternion, Role, Sample, Saved, Stride, Vector, Way
+from app.motion.basics import Quaternion, Role, Vector
+from app.motion.commands import Order
+from app.motion.estimate import Saved, Stride, Way
+from app.motion.samples import Sample
 
 RECORDING = "/stridescope/recording"
 START = "/stridescope/start"

@@ -15,20 +15,10 @@ from app.formats import cdr, journal, keeping, mcap
 from app.formats.clean import countable
 from app.formats.gathering import Contents, Doubles, Gathered, gather
 from app.formats.raw import RawFoot
-from app.motion import (
-    Floats,
-    InputError,
-    Ints,
-    Journal,
-    Order,
-    Recording,
-    RestartHere,
-    Role,
-    Sample,
-    Samples,
-    Vector,
-    role_of,
-)
+from app.motion.basics import Floats, InputError, Ints, Role, Vector, role_of
+from app.motion.commands import Order, RestartHere
+from app.motion.recording import Journal, Recording
+from app.motion.samples import Sample, Samples
 from app.settings import Settings
 
 FORMAT = "Stridescope recording"

@@ -14,7 +14,7 @@ from typing import NamedTuple
 
 from app.compressed import LARGEST, pack, unpack_all
 from app.formats.records import MESSAGE, At, table
-from app.motion import Ints
+from app.motion.basics import Ints
 
 MAGIC = b"\x89MCAP0\r\n"
 LIBRARY = "stridescope"

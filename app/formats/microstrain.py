@@ -15,7 +15,7 @@ from app.formats.clock import stamps
 from app.formats.raw import Parsed, RawFoot
 from app.formats.table import Converter, Head, floats, read_columns, words
 from app.formats.units import FIELD, FORCE, RATE, factor, split_unit
-from app.motion import Floats, InputError
+from app.motion.basics import Floats, InputError
 
 _FORCE, _RATE, _FIELD = "scaledaccel", "scaledgyro", "scaledmag"
 _QUANTITIES = {_FORCE: (FORCE, "g"), _RATE: (RATE, "rad/s"), _FIELD: (FIELD, "gauss")}

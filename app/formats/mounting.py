@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion import Floats, InputError
+from app.motion.basics import Floats, InputError
 
 #: (sensor axis 0…2, sign ±1) for toe, right, down
 Axes = tuple[tuple[int, int], tuple[int, int], tuple[int, int]]

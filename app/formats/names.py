@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import unicodedata
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 LONGEST = 120  # bytes: with a suffix it still fits every file system
 #: What separates folders somewhere, or means a device or a stream of a file there.

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from app.formats.mounting import Axes, parse_axes
 from app.formats.saturation import RANGES
-from app.motion import InputError
+from app.motion.basics import InputError
 
 FEET = ("left", "right", "foot")
 KEYS = ("rate", "axes", "foot", "device")

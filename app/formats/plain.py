@@ -13,7 +13,9 @@ import numpy as np
 
 from app.formats.raw import Parsed, RawFoot
 from app.formats.table import Converter, Head, floats, nanoseconds, read_columns, shifted_floats, words
-from app.motion import InputError, Recording, Samples
+from app.motion.basics import InputError
+from app.motion.recording import Recording
+from app.motion.samples import Samples
 
 HEADER = "t_s,foot,fx_mps2,fy_mps2,fz_mps2,wx_radps,wy_radps,wz_radps,mx_gauss,my_gauss,mz_gauss"
 FORMAT = "plain CSV"

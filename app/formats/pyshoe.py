@@ -9,7 +9,7 @@ import numpy as np
 import scipy.io
 
 from app.formats.raw import Parsed, RawFoot, whole_ns
-from app.motion import Floats, InputError
+from app.motion.basics import Floats, InputError
 
 _MAGIC = (b"MATLAB 5.0", b"MATLAB 7.3")
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from app.motion import Floats, Ints
+from app.motion.basics import Floats, Ints
 
 #: A stamp that could not be read.
 NO_STAMP = int(np.iinfo(np.int64).min)

@@ -16,7 +16,9 @@ from app.formats.rest import Rest, check_units, find_rest
 from app.formats.saturation import RANGES, Range, saturation
 from app.formats.swing import face_forward
 from app.formats.table import read_head, to_text
-from app.motion import InputError, Recording, Samples
+from app.motion.basics import InputError
+from app.motion.recording import Recording
+from app.motion.samples import Samples
 
 EXPECTED = (
     "expected plain CSV, x-io, MicroStrain or gaitmap CSV, a PyShoe MATLAB file or a recording of Stridescope"

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.compiled import kernel
-from app.motion import Floats, Ints
+from app.motion.basics import Floats, Ints
 
 Octets = NDArray[np.uint8]
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 from app.formats import mcap
 from app.formats.keeping import IMU
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 class Recovered(NamedTuple):

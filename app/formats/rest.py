@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from app.formats.units import FORCE, G_MPS2
-from app.motion import Floats, InputError, Samples
+from app.motion.basics import Floats, InputError
+from app.motion.samples import Samples
 
 _WINDOW_S = 0.1  # even a shuffling patient stands this long
 _EARLY_S = 60.0

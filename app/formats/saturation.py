@@ -13,7 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion import SAMPLE_WIDTH, Column, Floats
+from app.motion.basics import Floats
+from app.motion.samples import SAMPLE_WIDTH, Column
 
 _G = 9.80665
 _NEAR = 0.98  # of the range: flagged from here on

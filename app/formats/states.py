@@ -18,7 +18,7 @@ import numpy as np
 
 from app.compiled import KERNELS
 from app.formats.journal import from_json, to_json
-from app.motion import Saved, Way
+from app.motion.estimate import Saved, Way
 from app.settings import Settings
 
 #: No way of half a minute has more corners; one that says so is not drawn.

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from app.motion import Floats, Role
+from app.motion.basics import Floats, Role
 
 _BODIES = {Role.LEFT: "calcn_l_imu", Role.RIGHT: "calcn_r_imu", Role.FOOT: "calcn_r_imu"}
 

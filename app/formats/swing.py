@@ -14,7 +14,8 @@ from numpy.typing import NDArray
 from scipy.ndimage import maximum_filter1d
 
 from app.formats.mounting import Axes, turn
-from app.motion import GAP_NS, Floats, Samples
+from app.motion.basics import Floats
+from app.motion.samples import GAP_NS, Samples
 
 _STANCE_RADPS = 0.6
 _STANCE_S = 0.1  # a swinging foot turns back without standing: it is slow, but not for long

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.formats.raw import NO_STAMP, whole_ns
-from app.motion import Floats, InputError, Ints
+from app.motion.basics import Floats, InputError, Ints
 
 Converter = Callable[[list[str]], NDArray[Any]]
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 G_MPS2 = 9.80665
 

@@ -12,7 +12,7 @@ import numpy as np
 from app.formats.raw import Parsed, RawFoot, even_stamps
 from app.formats.table import Converter, Head, floats, nanoseconds, read_columns
 from app.formats.units import FIELD, FORCE, RATE, RELATIVE, TIME_DIGITS, factor, split_unit
-from app.motion import Floats, InputError, Ints
+from app.motion.basics import Floats, InputError, Ints
 
 XIMU_RATE_HZ = 256.0
 

@@ -9,7 +9,7 @@ import numpy as np
 from app.gestures import state as s
 from app.gestures.pair import decide, step
 from app.gestures.words import GENTLE_MPS, SILENCE_NS, Decision, FootReading
-from app.motion import MotionId, Role
+from app.motion.basics import MotionId, Role
 
 _FOOT = ("left foot", "right foot", "both feet")
 _OTHER = ("right", "left", "")

@@ -11,7 +11,8 @@ from dataclasses import dataclass, field
 
 from app.clocks import Clock
 from app.gestures.words import SILENCE_NS, FootReading
-from app.motion import Role, Sample
+from app.motion.basics import Role
+from app.motion.samples import Sample
 
 FEET = (Role.LEFT, Role.RIGHT)
 _OTHER = {Role.LEFT: Role.RIGHT, Role.RIGHT: Role.LEFT}

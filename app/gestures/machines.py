@@ -10,7 +10,7 @@ import numpy as np
 from app.gestures import state as s
 from app.gestures.default import DefaultDecoder
 from app.gestures.papers import FEET, PapersDecoder
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.visit import Machines
 
 _KINDS = {s.STEP: "step", s.TWIST: "twist", s.BACK: "back", s.TOE_UP: "taps"}

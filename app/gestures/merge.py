@@ -7,7 +7,8 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 
 from app.gestures.words import UNKNOWN_Q, Decision, Decoder, FootReading, standing
-from app.motion import Column, Floats, Role, Samples
+from app.motion.basics import Floats, Role
+from app.motion.samples import Column, Samples
 
 
 def readings(

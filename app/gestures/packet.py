@@ -5,7 +5,7 @@ from __future__ import annotations
 import struct
 
 from app.gestures.words import Decision
-from app.motion import MotionId
+from app.motion.basics import MotionId
 
 PACKET = struct.Struct(">hh")  # motion id, speed in mm/s: signed, big-endian
 #: Send at least so often, and on every change.

@@ -9,7 +9,7 @@ import math
 from dataclasses import dataclass, field
 
 from app.gestures.words import SILENCE_NS, Decision, FootReading, standing
-from app.motion import MotionId, Quaternion, Role
+from app.motion.basics import MotionId, Quaternion, Role
 from app.rotation import yaw_of
 
 FEET = (Role.LEFT, Role.RIGHT)

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 from app.gestures.default import DefaultDecoder, DefaultSettings
 from app.gestures.words import FootReading
-from app.motion import Role
+from app.motion.basics import Role
 from app.visit import Task
 
 _SENSITIVE = replace(DefaultSettings(), on_radps=0.35, off_radps=0.18, sure_rad=0.05)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from app.gestures.words import Decision, standing
-from app.motion import Floats, MotionId
+from app.motion.basics import Floats, MotionId
 from app.world import Town
 
 #: Which way each motion goes: ahead, to the right.

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.sparse import coo_matrix, csr_matrix
 from scipy.sparse.csgraph import dijkstra
 
-from app.motion import Floats, MotionId
+from app.motion.basics import Floats, MotionId
 from app.world import Place, Town
 
 CELL_M, FINE_M = 2.0, 0.5

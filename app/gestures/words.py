@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import NamedTuple, Protocol
 
-from app.motion import MotionId, Quaternion, Role, Vector
+from app.motion.basics import MotionId, Quaternion, Role, Vector
 
 #: A foot that says nothing for longer is dead: the camera comes to rest.
 SILENCE_NS = 150_000_000

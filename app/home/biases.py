@@ -9,7 +9,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.home import calibrations
-from app.motion import GyroBias, InputError, Vector
+from app.motion.basics import InputError, Vector
+from app.motion.samples import GyroBias
 
 log = logging.getLogger(__name__)
 

@@ -10,7 +10,9 @@ from pathlib import Path
 import platformdirs
 
 from app.calibration.words import Calibration, from_json, to_json
-from app.motion import InputError, Sample, SourceInfo
+from app.motion.basics import InputError
+from app.motion.samples import Sample
+from app.motion.source import SourceInfo
 
 log = logging.getLogger(__name__)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import platformdirs
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.settings import BUILT_IN, Settings
 
 #: A profile's name is a file's name and nothing else: no separators, no leading dot.

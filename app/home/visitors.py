@@ -10,7 +10,7 @@ from pathlib import Path
 
 import platformdirs
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 #: A visitor's name is a file's name and nothing else.
 NAME = re.compile(r"[\w][\w \-]{0,39}")

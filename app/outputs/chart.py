@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.studies.words import Curve, Plot
 
 WIDTH, HEIGHT = 640, 340

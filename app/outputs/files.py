@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def beside(path: Path, word: str) -> Path:

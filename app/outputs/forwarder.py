@@ -19,7 +19,8 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake, InvalidSta
 from app.formats.wire.message import MOST_SAMPLES, encode_binary, fitting
 from app.formats.wire.outbox import Outbox, Parcel
 from app.formats.wire.reply import Ack, decode_reply
-from app.motion import InputError, Sample
+from app.motion.basics import InputError
+from app.motion.samples import Sample
 
 _log = logging.getLogger(__name__)
 _quiet = logging.getLogger(f"{__name__}.websockets")

@@ -8,7 +8,8 @@ from typing import Any
 
 from app.clocks import LiveClock
 from app.formats.wire.lsl import CHANNELS, SHOE_AXES, TYPE, row
-from app.motion import Sample, role_of
+from app.motion.basics import role_of
+from app.motion.samples import Sample
 
 _FULL, _BARE = 9, 6
 _LINGER_S = 1.0  # what is left in the outlets is taken so long after the end

@@ -22,18 +22,12 @@ from typing import Any
 from app import __version__
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
-from app.motion import (
-    InputError,
-    Order,
-    Quaternion,
-    RecorderState,
-    Sample,
-    Saved,
-    SourceInfo,
-    Stride,
-    Vector,
-    Way,
-)
+from app.motion.basics import InputError, Quaternion, Vector
+from app.motion.commands import Order
+from app.motion.estimate import Saved, Stride, Way
+from app.motion.samples import Sample
+from app.motion.source import SourceInfo
+from app.motion.status import RecorderState
 from app.outputs.syncing import Syncer
 
 log = logging.getLogger(__name__)

@@ -11,7 +11,7 @@ import socket
 from collections.abc import Callable
 
 from app.formats import osc
-from app.motion import InputError
+from app.motion.basics import InputError
 
 #: A packet at least so often (contract.md: ten a second).
 PACKET_S = 0.08

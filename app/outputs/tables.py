@@ -9,7 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats, GaitPhase, InputError, RowColumn, Stride
+from app.motion.basics import Floats, GaitPhase, InputError
+from app.motion.estimate import RowColumn, Stride
 
 TRAJECTORY = "t_s,foot,north_m,east_m,down_m,vn_mps,ve_mps,vd_mps,qw,qx,qy,qz,phase"
 STRIDES = "foot,start_s,end_s,length_m,duration_s,swing_s,stance_s,lift_m,turn_deg"

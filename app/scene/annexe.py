@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from app.motion import OpenTown, Status
+from app.motion.commands import OpenTown
+from app.motion.status import Status
 from app.scene.controls import Controls
 from app.scene.words import plain
 

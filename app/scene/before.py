@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from app.motion import Calibrate, CalibrationView, CheckFirst, Command, LineState, PreflightView, Status
+from app.motion.commands import Calibrate, CheckFirst, Command
+from app.motion.status import CalibrationView, LineState, PreflightView, Status
 from app.scene import pictures, words
 from app.scene.controls import Controls
 

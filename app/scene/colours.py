@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion import Role
+from app.motion.basics import Role
 
 Rgb = tuple[int, int, int]
 

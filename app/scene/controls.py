@@ -16,7 +16,8 @@ from typing import Any
 
 import viser
 
-from app.motion import Command, GuiRule, Order
+from app.motion.commands import Command, Order
+from app.motion.door import GuiRule
 from app.scene import private
 
 Submit = Callable[[Order], None]

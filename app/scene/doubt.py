@@ -8,7 +8,8 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.motion import Role, Trust, Vector
+from app.motion.basics import Role, Vector
+from app.motion.estimate import Trust
 from app.scene.colours import FOOT, Rgb, blend
 from app.scene.guard import FAR_M
 

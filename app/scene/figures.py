@@ -7,7 +7,10 @@ from collections.abc import Callable
 from dataclasses import fields
 
 from app.limits import Limit, Value
-from app.motion import FootView, GaitPhase, Link, OwnView, Role, Snapshot, Status
+from app.motion.basics import GaitPhase, Role
+from app.motion.snapshot import FootView, OwnView, Snapshot
+from app.motion.source import Link
+from app.motion.status import Status
 from app.scene import words
 from app.scene.guard import drawable
 from app.settings import LIMITS, Settings

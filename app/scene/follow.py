@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from app.motion import Vector
+from app.motion.basics import Vector
 
 #: North, east, down: slow in height, or the floor would bob with every step.
 STIFFNESS_PER_S = (3.2, 3.2, 0.7)

@@ -8,7 +8,8 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.motion import Footprint, Role, Vector
+from app.motion.basics import Role, Vector
+from app.motion.snapshot import Footprint
 from app.scene.colours import FOOT, Rgb, blend, shade
 from app.scene.guard import FAR_M
 from app.scene.shoe import SENSOR_HEIGHT_M, sole

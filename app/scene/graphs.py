@@ -11,7 +11,8 @@ import viser
 from numpy.typing import NDArray
 from viser import uplot
 
-from app.motion import FootView, Graph, Role, Snapshot
+from app.motion.basics import Role
+from app.motion.snapshot import FootView, Graph, Snapshot
 from app.scene.colours import FOOT, SWING, TRUTH, Rgb, css
 from app.scene.guard import finite_rows
 

@@ -9,7 +9,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.motion import Vector
+from app.motion.basics import Vector
 from app.scene.baked import linear, ribbons
 from app.scene.colours import Rgb, blend, theme
 from app.scene.glb import Part, glb, joined

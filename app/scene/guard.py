@@ -7,7 +7,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion import FootView, OwnView, Quaternion
+from app.motion.basics import Quaternion
+from app.motion.snapshot import FootView, OwnView
 
 #: Further away than this is a filter that ran off, not a walk; single precision ends here too.
 FAR_M = 1e5

@@ -2,18 +2,10 @@
 
 from __future__ import annotations
 
-from app.motion import (
-    ApplyCandidate,
-    DropCandidate,
-    FindGains,
-    KeepAs,
-    SetApplyAtOnce,
-    Snapshot,
-    Status,
-    SwapAB,
-    Sweep,
-    Undo,
-)  # fmt: skip
+from app.motion.commands import ApplyCandidate, DropCandidate, FindGains, KeepAs, SetApplyAtOnce, SwapAB, Undo
+from app.motion.estimate import Sweep
+from app.motion.snapshot import Snapshot
+from app.motion.status import Status
 from app.scene import figures, private, surface, swinging
 from app.scene.controls import Controls, Input
 

@@ -7,7 +7,7 @@ import json
 import math
 from typing import Any
 
-from app.motion import MotionId
+from app.motion.basics import MotionId
 from app.scene.words import LONGEST
 from app.visit import Goal, Task, Visit
 from app.world import Town

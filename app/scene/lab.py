@@ -6,7 +6,9 @@ from functools import partial
 from html import escape
 from typing import Any
 
-from app.motion import HAND_IN, GuiRule, SetErrors, Status, Swing, TakeLesson
+from app.motion.commands import SetErrors, Swing, TakeLesson
+from app.motion.door import HAND_IN, GuiRule
+from app.motion.status import Status
 from app.scene.controls import Controls, Input
 from app.scene.tuning import title
 from app.simulate.lab import LESSONS, LIMITS, PERFECT

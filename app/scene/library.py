@@ -5,7 +5,9 @@ from __future__ import annotations
 import math
 from urllib.parse import quote
 
-from app.motion import Command, GuiRule, Play, Rename, SetDeclination, Share, ShelfFile, Status
+from app.motion.commands import Command, Play, Rename, SetDeclination, Share
+from app.motion.door import GuiRule
+from app.motion.status import ShelfFile, Status
 from app.scene import words
 from app.scene.controls import Controls
 

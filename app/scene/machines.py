@@ -9,7 +9,7 @@ import viser
 from numpy.typing import NDArray
 from viser import uplot
 
-from app.motion import Role
+from app.motion.basics import Role
 from app.scene.colours import FOOT, Rgb, css
 from app.visit import Machines
 

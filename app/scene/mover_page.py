@@ -8,7 +8,8 @@ import time
 from collections.abc import Mapping
 from pathlib import Path
 
-from app.motion import GuiRule, Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.door import GuiRule
 from app.scene import hud, private, town
 from app.scene.controls import Controls, Submit
 from app.scene.machines import MachineGraphs

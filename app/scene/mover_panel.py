@@ -5,7 +5,8 @@ from __future__ import annotations
 import time
 from functools import partial
 
-from app.motion import Command, GuiRule
+from app.motion.commands import Command
+from app.motion.door import GuiRule
 from app.scene import words
 from app.scene.beat import beat
 from app.scene.controls import Ask, Controls, Input

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from app.motion import Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
 from app.rotation import multiply
 from app.scene.glb import Part, glb
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import viser
 
-from app.motion import Outline, Role
+from app.motion.basics import Role
+from app.motion.source import Outline
 from app.scene.colours import FOOT, blend
 from app.scene.guard import finite_segments
 from app.scene.walkers import GREY, origin

@@ -8,7 +8,10 @@ from collections.abc import Mapping
 
 import viser
 
-from app.motion import GuiRule, Quaternion, Snapshot, Status, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.door import GuiRule
+from app.motion.snapshot import Snapshot
+from app.motion.status import Status
 from app.scene import private
 from app.scene.controls import Controls, Submit
 from app.scene.follow import Glide, middle

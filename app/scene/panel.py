@@ -8,7 +8,9 @@ from typing import Any
 
 import viser
 
-from app.motion import ResetHeading, RestartHere, Snapshot, Status
+from app.motion.commands import ResetHeading, RestartHere
+from app.motion.snapshot import Snapshot
+from app.motion.status import Status
 from app.scene import figures, phones, swinging
 from app.scene.annexe import Town
 from app.scene.beat import beat

@@ -7,7 +7,8 @@ from dataclasses import replace
 import trimesh
 import viser
 
-from app.motion import Quaternion, Role, Snapshot, Vector
+from app.motion.basics import Quaternion, Role, Vector
+from app.motion.snapshot import Snapshot
 from app.scene import private
 from app.scene.colours import CANDIDATE, FOOT, TRUTH, Rgb
 from app.scene.guard import is_turn, unit

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.motion import Status
+from app.motion.status import Status
 
 PHONE = "phone"  # the source's name
 _CODE = (

@@ -15,7 +15,7 @@ import numpy as np
 import viser
 from viser import _messages
 
-from app.motion import Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
 
 SOCKET_BYTES = 64 * 1024
 Json = dict[str, Any]

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from app.motion import Command, LoadProfile, SaveProfile, Status
+from app.motion.commands import Command, LoadProfile, SaveProfile
+from app.motion.status import Status
 from app.scene.controls import Controls
 
 CHOOSE = "choose…"

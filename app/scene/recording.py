@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from app.motion import Command, Mark, Record, Status
+from app.motion.commands import Command, Mark, Record
+from app.motion.status import Status
 from app.scene import words
 from app.scene.controls import Controls
 

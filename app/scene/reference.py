@@ -7,7 +7,7 @@ import math
 import numpy as np
 import viser
 
-from app.motion import Reference
+from app.motion.status import Reference
 from app.scene import words
 from app.scene.colours import Rgb
 from app.scene.shoe import SENSOR_HEIGHT_M

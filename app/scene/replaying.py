@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from app.motion import GuiRule, Loop, Pause, Seek, Speed, Status, Step
+from app.motion.commands import Loop, Pause, Seek, Speed, Step
+from app.motion.door import GuiRule
+from app.motion.status import Status
 from app.scene import figures
 from app.scene.controls import Controls
 

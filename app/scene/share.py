@@ -12,7 +12,7 @@ from html import escape
 
 import viser
 
-from app.motion import FootView, Snapshot
+from app.motion.snapshot import FootView, Snapshot
 from app.scene import figures, private, swinging, words
 from app.scene.follow import Glide, middle
 from app.scene.ground import Ground

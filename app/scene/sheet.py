@@ -12,7 +12,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from app.limits import Limit, Value
-from app.motion import Snapshot, Status
+from app.motion.snapshot import Snapshot
+from app.motion.status import Status
 from app.scene import figures, swinging, words
 from app.scene.head import style
 from app.scene.lab import notice

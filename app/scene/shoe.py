@@ -10,7 +10,7 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.motion import Quaternion, Role, Vector
+from app.motion.basics import Quaternion, Role, Vector
 from app.rotation import from_yaw
 from app.scene import private
 from app.scene.baked import apart, lit

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from app.motion import Health, Light, Recent, Snapshot, Status
+from app.motion.health import Health, Light, Recent
+from app.motion.snapshot import Snapshot
+from app.motion.status import Status
 from app.scene import words
 from app.scene.controls import Controls
 from app.scene.figures import FEET, is_stale

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import viser
 
-from app.motion import PendulumView, Snapshot, Vector
+from app.motion.basics import Vector
+from app.motion.snapshot import PendulumView, Snapshot
 from app.scene.pendulum import Pendulum, no_feet
 from app.scene.walkers import Walkers
 

@@ -9,7 +9,7 @@ import zlib
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion import Sweep
+from app.motion.estimate import Sweep
 from app.scene import words
 from app.scene.colours import viridis
 

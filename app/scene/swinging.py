@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from app.motion import FootView, PendulumView, Snapshot
+from app.motion.snapshot import FootView, PendulumView, Snapshot
 from app.rotation import pitch_of
 from app.scene import figures, words
 from app.scene.figures import Compared, tile

@@ -8,7 +8,8 @@ import numpy as np
 import viser
 from numpy.typing import NDArray
 
-from app.motion import Trail, Vector
+from app.motion.basics import Vector
+from app.motion.snapshot import Trail
 from app.scene.colours import Rgb
 from app.scene.guard import finite_segments
 

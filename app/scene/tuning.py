@@ -7,7 +7,9 @@ from collections.abc import Callable
 from typing import Any
 
 from app.limits import Limit, Value
-from app.motion import GuiRule, ReplaceCandidate, SetCandidate, Snapshot
+from app.motion.commands import ReplaceCandidate, SetCandidate
+from app.motion.door import GuiRule
+from app.motion.snapshot import Snapshot
 from app.scene.controls import Controls, Input
 from app.settings import BUILT_IN, LIMITS, is_read
 

@@ -7,7 +7,8 @@ from collections.abc import Iterable
 
 import viser
 
-from app.motion import FootView, OwnView, Role, Snapshot, Trail, Vector
+from app.motion.basics import Role, Vector
+from app.motion.snapshot import FootView, OwnView, Snapshot, Trail
 from app.scene.colours import CANDIDATE, FOOT, OWN, TRUTH, Rgb, blend
 from app.scene.doubt import Doubt
 from app.scene.footprints import Footprints

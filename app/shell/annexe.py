@@ -13,7 +13,7 @@ from pathlib import Path
 from urllib.parse import urlsplit
 
 from app.door.access import Access
-from app.motion import InputError
+from app.motion.basics import InputError
 
 ROOT = Path(__file__).parent.parent.parent
 #: A first start compiles what hears the feet, but listens before.

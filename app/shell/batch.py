@@ -18,7 +18,11 @@ from app.gestures.default import DefaultDecoder
 from app.gestures.merge import changes, decode
 from app.gestures.papers import PapersDecoder
 from app.gestures.words import Decision
-from app.motion import ATTITUDE, ClockLine, Floats, GyroBias, InputError, KnowBias, Recording, Role, Samples
+from app.motion.basics import Floats, InputError, Role
+from app.motion.commands import KnowBias
+from app.motion.estimate import ATTITUDE
+from app.motion.recording import Recording
+from app.motion.samples import ClockLine, GyroBias, Samples
 from app.outputs import tables
 from app.settings import Settings
 from app.sources.files import load, printable

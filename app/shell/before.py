@@ -15,18 +15,12 @@ from app.calibration.guide import Guide
 from app.calibration.telling import table
 from app.calibration.words import Calibration
 from app.home import calibrations
-from app.motion import (
-    Calibrate,
-    CalibrationView,
-    CheckFirst,
-    InputError,
-    PreflightView,
-    Role,
-    Sample,
-    Snapshot,
-    SourceInfo,
-    Status,
-)
+from app.motion.basics import InputError, Role
+from app.motion.commands import Calibrate, CheckFirst
+from app.motion.samples import Sample
+from app.motion.snapshot import Snapshot
+from app.motion.source import SourceInfo
+from app.motion.status import CalibrationView, PreflightView, Status
 from app.preflight import Preflight, sentence
 
 #: Between looks at how far both are.

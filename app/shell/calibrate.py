@@ -10,7 +10,10 @@ from collections.abc import Callable
 from app.calibration.guide import GRAVITY_MPS2, Guide
 from app.calibration.words import Calibration
 from app.home.calibrations import key_of
-from app.motion import GuideView, InputError, Link, Sample
+from app.motion.basics import InputError
+from app.motion.samples import Sample
+from app.motion.source import Link
+from app.motion.status import GuideView
 from app.sources.opening import open_source
 from app.sources.source import Source
 

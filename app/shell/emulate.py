@@ -16,7 +16,10 @@ from app.formats.mounting import Axes
 from app.formats.wire import gx1_talk
 from app.formats.wire.catalogue import KINDS, Model
 from app.formats.wire.faults import Faults, Line
-from app.motion import InputError, Recording, Sample, Truth
+from app.motion.basics import InputError
+from app.motion.recording import Recording
+from app.motion.samples import Sample
+from app.motion.source import Truth
 from app.outputs.terminal import Terminal
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec

@@ -10,7 +10,10 @@ from pathlib import Path
 from app.estimator.tracker import Tracker
 from app.formats import geo, plain
 from app.formats.sto import sto
-from app.motion import ATTITUDE, POSITION, Floats, InputError, Recording, Samples
+from app.motion.basics import Floats, InputError
+from app.motion.estimate import ATTITUDE, POSITION
+from app.motion.recording import Recording
+from app.motion.samples import Samples
 from app.outputs import tables
 from app.outputs.files import write_new
 from app.sources.opening import open_recording

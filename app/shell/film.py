@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.motion import InputError, Recording, Truth, role_of
+from app.motion.basics import InputError, role_of
+from app.motion.recording import Recording
+from app.motion.source import Truth
 from app.outputs.files import write_new
 from app.scene.share import film
 from app.session import Session

@@ -9,7 +9,9 @@ from collections.abc import Callable
 from contextlib import suppress
 
 from app.formats.wire.message import NAME
-from app.motion import InputError, RestartHere, Sample
+from app.motion.basics import InputError
+from app.motion.commands import RestartHere
+from app.motion.samples import Sample
 from app.outputs.forwarder import Links, Sender, sender_to
 from app.outputs.lsl import LslSender
 from app.sources.lsl import library

@@ -10,7 +10,9 @@ from typing import NamedTuple
 import numpy as np
 
 from app import __version__
-from app.motion import Floats, InputError, Snapshot, Status, Trail
+from app.motion.basics import Floats, InputError
+from app.motion.snapshot import Snapshot, Trail
+from app.motion.status import Status
 from app.outputs.chart import chart
 from app.outputs.chart_style import style
 from app.scene import sheet

@@ -12,9 +12,11 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from app import motion as m
 from app.formats.gpx import turned
 from app.home.key import key
+from app.motion.basics import InputError
+from app.motion.commands import Play, Rename, SetDeclination, Share
+from app.motion.status import Reference, ShelfFile
 from app.outputs.files import beside
 from app.settings import Settings
 from app.shell.aside import aside
@@ -37,12 +39,12 @@ class Librarian:
         folder: Path,
         say: Callable[[str], None],
         opened: Callable[[str, Source], None],
-        reference: m.Reference | None = None,
+        reference: Reference | None = None,
         declination_deg: float = 0.0,
     ) -> None:
         self.shelf = Shelf(folder)
         self.reference, self._declination_deg = reference, declination_deg
-        self.files: tuple[m.ShelfFile, ...] = ()
+        self.files: tuple[ShelfFile, ...] = ()
         self._say, self._opened = say, opened
         self._sharing = False
         self._errands: set[asyncio.Task[None]] = set()
@@ -53,17 +55,17 @@ class Librarian:
             self.files = await asyncio.to_thread(self.shelf.files)
             await asyncio.sleep(LOOK_S)
 
-    def take(self, command: m.Play | m.Rename | m.Share | m.SetDeclination, settings: Settings) -> None:
+    def take(self, command: Play | Rename | Share | SetDeclination, settings: Settings) -> None:
         """Begin what is asked for; what becomes of it is said. ``settings`` are the main track's."""
         match command:
-            case m.Play(name):
+            case Play(name):
                 self._say(f"Opening {name}")
                 self._send(self._compare(name) if name.lower().endswith(TRACK) else self._play(name))
-            case m.Rename(name, to):
+            case Rename(name, to):
                 self._send(self._rename(name, to))
-            case m.Share(name):
+            case Share(name):
                 self._send(self._share(name, settings))
-            case m.SetDeclination(degrees):
+            case SetDeclination(degrees):
                 self._declination_deg = degrees
                 if self.reference is not None:
                     self.reference = turned(self.reference, math.radians(degrees))
@@ -76,7 +78,7 @@ class Librarian:
     async def _told(self, errand: Coroutine[Any, Any, None]) -> None:
         try:
             await errand
-        except m.InputError as error:
+        except InputError as error:
             self._say(str(error))
 
     async def _play(self, name: str) -> None:
@@ -104,7 +106,7 @@ class Librarian:
     async def _share(self, name: str, settings: Settings) -> None:
         """In a process of its own: it is long work, and samples come first."""
         if self._sharing:
-            raise m.InputError("a page to share is being made already, one at a time")
+            raise InputError("a page to share is being made already, one at a time")
         path = await asyncio.to_thread(self.shelf.path, name)
         into = path.with_suffix(SHARED)
         into = beside(into, "shared") if into.exists() else into
@@ -131,7 +133,7 @@ class Librarian:
                 process.kill()
         if process.returncode:
             lines = trouble.decode(errors="replace").strip().splitlines()
-            raise m.InputError(lines[-1] if lines else "the page could not be made")
+            raise InputError(lines[-1] if lines else "the page could not be made")
 
     async def _rename(self, name: str, to: str) -> None:
         new = await asyncio.to_thread(self.shelf.rename, name, to)

@@ -11,7 +11,7 @@ from app.formats import mcap
 from app.formats.kept import Kept, kept, lost_seqs
 from app.formats.recover import Recovered
 from app.formats.recover import recover as recovered
-from app.motion import Recording
+from app.motion.recording import Recording
 from app.outputs.files import beside, write_new
 from app.sources.files import read_bytes
 from app.sources.opening import open_recording

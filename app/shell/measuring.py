@@ -9,7 +9,9 @@ from collections.abc import Sequence
 from app.clocks import LiveClock
 from app.damage import Damage
 from app.health import Monitor, judge
-from app.motion import GaitPhase, InputError, Light, Recent, Sample, role_of
+from app.motion.basics import GaitPhase, InputError, role_of
+from app.motion.health import Light, Recent
+from app.motion.samples import Sample
 from app.shell.doctor import Finding
 from app.sources.opening import open_live
 from app.sources.source import Source

@@ -14,7 +14,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app import motion as m
 from app.clocks import Clock, LiveClock
 from app.door.access import Access
 from app.door.front import Door
@@ -24,6 +23,9 @@ from app.gestures.words import standing
 from app.home import visitors
 from app.home.calibrations import Corrections
 from app.launch import open_in_browser
+from app.motion.basics import InputError, Role, role_of
+from app.motion.commands import MoverCommand, Order, RestartHere
+from app.motion.samples import Sample
 from app.outputs.senders import AxesSender, Outlet, PacketSender
 from app.scene.mover_page import MoverScene
 from app.simulate.gestures_options import GestureOptions, parse
@@ -44,7 +46,7 @@ MESSAGE_S = 6.0
 #: The walk that OSC calls 1.
 FULL_MPS = 2.0
 DEFAULT_SOURCE = "sim:gestures"
-SIDES = {"left": m.Role.LEFT, "right": m.Role.RIGHT}
+SIDES = {"left": Role.LEFT, "right": Role.RIGHT}
 TILES = {(3, 1): ("left", "centre", "right"), (2, 1): ("left", "right")}
 
 
@@ -78,7 +80,7 @@ class Feed:
         self.source, self.side = source, side
         self._corrections = Corrections(lambda: source.info)
 
-    def named(self, sample: m.Sample) -> m.Sample:
+    def named(self, sample: Sample) -> Sample:
         """The sample as its sensor was calibrated, under its side's name."""
         sample = self._corrections.apply(sample)
         return sample if self.side is None else sample._replace(sensor=self.side)
@@ -100,7 +102,7 @@ def open_feeds(options: Options) -> list[Feed]:
         return []
     if options.left or options.right:
         if options.source or not (options.left and options.right):
-            raise m.InputError("expected --source alone, or both --left and --right")
+            raise InputError("expected --source alone, or both --left and --right")
         return [Feed(open_source(spec, changes=False), side) for side, spec in
                 (("left", options.left), ("right", options.right))]  # fmt: skip
     return [Feed(open_source(options.source or DEFAULT_SOURCE, changes=False), None)]
@@ -155,7 +157,7 @@ class Mover:
             simulated=live_options(options),
         )  # fmt: skip
         self._senders = self._open_senders()
-        self._orders: asyncio.Queue[m.Order] = asyncio.Queue()
+        self._orders: asyncio.Queue[Order] = asyncio.Queue()
         self._stop = asyncio.Event()
         self._message_until = 0.0
         self._visit: Visit | None = None
@@ -166,7 +168,7 @@ class Mover:
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, self._stop.set)
 
-        def submit(order: m.Order) -> None:
+        def submit(order: Order) -> None:
             with contextlib.suppress(RuntimeError):  # the loop has ended
                 loop.call_soon_threadsafe(self._orders.put_nowait, order)
 
@@ -221,9 +223,9 @@ class Mover:
 
     async def _acquire(self, feed: Feed) -> None:
         async for item in feed.source:
-            if isinstance(item, m.RestartHere):
+            if isinstance(item, RestartHere):
                 self._visiting.begin_anew()
-            elif isinstance(item, m.Sample):
+            elif isinstance(item, Sample):
                 self._visiting.take(feed.named(item))
 
     async def _obey(self) -> None:
@@ -231,10 +233,10 @@ class Mover:
             order = await self._orders.get()
             try:
                 self._take(order)
-            except m.InputError as error:
+            except InputError as error:
                 self._say(str(error))
 
-    def _take(self, order: m.Order) -> None:
+    def _take(self, order: Order) -> None:
         match order.command:
             case SaveVisitor(name):
                 visitors.save(name, self._visiting.kept())
@@ -243,14 +245,14 @@ class Mover:
             case LoadVisitor(name):
                 self._visiting.use(visitors.load(name))
                 self._say(f"visitor {name}: thresholds as before")
-            case m.MoverCommand() as command:
+            case MoverCommand() as command:
                 self._visiting.obey(command, time.monotonic_ns())
 
-    def _role(self, sensor: str) -> m.Role:
+    def _role(self, sensor: str) -> Role:
         if sensor in SIDES:
             return SIDES[sensor]
         told = (feed.source.info.sensors.get(sensor) for feed in self._feeds)
-        return next((role for role in told if role is not None), m.role_of(sensor))
+        return next((role for role in told if role is not None), role_of(sensor))
 
     def _clock(self, sensor: str) -> Clock:
         """Arrivals tell every clock, a replay's too: its samples are released at their own pace."""

@@ -11,7 +11,10 @@ from pathlib import Path
 from app.formats.journal import Start
 from app.home.calibrations import Corrections
 from app.home.key import key
-from app.motion import InputError, Order, RecorderState, RestartHere, Sample
+from app.motion.basics import InputError
+from app.motion.commands import Order, RestartHere
+from app.motion.samples import Sample
+from app.motion.status import RecorderState
 from app.outputs.recorder import Recorder
 from app.saving import Saver
 from app.session import Session

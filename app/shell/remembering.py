@@ -8,7 +8,9 @@ from collections.abc import Callable
 
 from app.estimator.bias import learnt
 from app.home import biases, calibrations
-from app.motion import InputError, KnowBias, Order, SourceInfo
+from app.motion.basics import InputError
+from app.motion.commands import KnowBias, Order
+from app.motion.source import SourceInfo
 from app.session import Session
 
 log = logging.getLogger(__name__)

@@ -19,7 +19,6 @@ from pathlib import Path
 
 import numpy as np
 
-from app import motion as m
 from app import preflight
 from app.clocks import Clock, clock_for
 from app.damage import Damage
@@ -34,6 +33,40 @@ from app.home import profiles
 from app.home.key import key
 from app.launch import open_in_browser
 from app.measures import measures
+from app.motion.basics import Floats, InputError, Role, role_of
+from app.motion.commands import (
+    ApplyCandidate,
+    Calibrate,
+    CheckFirst,
+    Command,
+    FindGains,
+    LoadProfile,
+    LookBack,
+    Loop,
+    Mark,
+    OpenTown,
+    Order,
+    Pause,
+    Play,
+    Record,
+    Rename,
+    ReplaceCandidate,
+    RestartHere,
+    SaveProfile,
+    Seek,
+    SetDeclination,
+    SetErrors,
+    Share,
+    Speed,
+    Step,
+    Swing,
+    TakeLesson,
+)
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import Sample
+from app.motion.snapshot import FootView, Snapshot
+from app.motion.source import Link
+from app.motion.status import Reference, Status
 from app.outputs.recorder import Recorder
 from app.saving import Saver
 from app.scene.page import Scene
@@ -83,7 +116,7 @@ class Options:
     profile: str = "default"
     record: Path | None = None  # record from the beginning
     recordings: Path = Path("recordings")  # for the button
-    reference: m.Reference | None = None
+    reference: Reference | None = None
     declination_deg: float = 0.0  # magnetic north east of true north, for GPS tracks
 
 
@@ -115,7 +148,7 @@ class Viewer:
         self._filling: asyncio.Task[None] | None = None
         self._posed_s = 0.0
         self._strides: dict[str, tuple[int, int]] = {}  # epoch and number of the last stride recorded
-        self._orders: asyncio.Queue[m.Order] = asyncio.Queue()
+        self._orders: asyncio.Queue[Order] = asyncio.Queue()
         self._work = asyncio.Event()  # the session wants something re-estimated
         self._stop = asyncio.Event()
         self._fresh = asyncio.Event()  # there is something that no frame has shown
@@ -123,10 +156,10 @@ class Viewer:
         self._workers = ThreadPoolExecutor(3, thread_name_prefix="estimate")
         self._prepare_source()
         self._damage = Damage()
-        self._seen: m.Snapshot | None = None  # the newest that was drawn
-        self._shown: m.Status | None = None  # with it
+        self._seen: Snapshot | None = None  # the newest that was drawn
+        self._shown: Status | None = None  # with it
         self._frames = 0
-        self._status = m.Status(source.info, source.link, profiles=profiles.names())
+        self._status = Status(source.info, source.link, profiles=profiles.names())
         self._message_until = 0.0
         self._last_sample_s = time.monotonic()
         self._sweeping: asyncio.Task[None] | None = None
@@ -143,7 +176,7 @@ class Viewer:
         for number in (signal.SIGINT, signal.SIGTERM):
             loop.add_signal_handler(number, self._stop.set)
 
-        def submit(order: m.Order) -> None:
+        def submit(order: Order) -> None:
             loop.call_soon_threadsafe(self._orders.put_nowait, order)
 
         with contextlib.ExitStack() as closing:
@@ -234,20 +267,20 @@ class Viewer:
 
     async def _read(self) -> None:
         async for item in self._source:
-            if isinstance(item, m.RestartHere):
-                self._take_order(m.Order(item, "replay", time.monotonic_ns()))
+            if isinstance(item, RestartHere):
+                self._take_order(Order(item, "replay", time.monotonic_ns()))
                 if self._recorder is not None:
                     self._start_in(self._recorder)
-            elif isinstance(item, m.Order):
+            elif isinstance(item, Order):
                 self._take_order(item)
-            elif isinstance(item, m.Stretch):
+            elif isinstance(item, Stretch):
                 await self._take_stretch(item)
-            elif isinstance(item, m.Landing):
+            elif isinstance(item, Landing):
                 await self._land(item)
             else:
                 self._take_sample(item)
 
-    def _take_sample(self, sample: m.Sample) -> None:
+    def _take_sample(self, sample: Sample) -> None:
         sample = self._before.sample(sample)
         if (known := self._remembering.order(sample.sensor)) is not None:
             self._apply(known)
@@ -257,7 +290,7 @@ class Viewer:
         self._fresh.set()
         self._last_sample_s = time.monotonic()
 
-    async def _land(self, landing: m.Landing) -> None:
+    async def _land(self, landing: Landing) -> None:
         """Show a far place at once and fill in the walk before it; a recording of it wants every sample."""
         if self._recorder is None and not self._before.wants_each and self._session.land(landing):
             self._fresh.set()
@@ -275,7 +308,7 @@ class Viewer:
             session.filled(job, track)
             self._fresh.set()
 
-    async def _take_stretch(self, stretch: m.Stretch) -> None:
+    async def _take_stretch(self, stretch: Stretch) -> None:
         if self._before.wants_each:
             for sample in stretch.each():
                 self._take_sample(sample)
@@ -300,9 +333,9 @@ class Viewer:
         await aside(lambda: warm_up(self._options.settings.estimator, tell), "prepare")
         self._say("")
 
-    def _role(self, sensor: str) -> m.Role:
+    def _role(self, sensor: str) -> Role:
         named = self._before.names.get(sensor)
-        return named or self._source.info.sensors.get(sensor) or m.role_of(sensor)
+        return named or self._source.info.sensors.get(sensor) or role_of(sensor)
 
     def _clock(self, sensor: str) -> Clock:
         return clock_for(self._source.info, sensor)
@@ -311,49 +344,49 @@ class Viewer:
         while True:
             self._take_order(await self._orders.get())
 
-    def _take_order(self, order: m.Order) -> None:
+    def _take_order(self, order: Order) -> None:
         try:
             match order.command:
-                case m.FindGains():
+                case FindGains():
                     self._find_gains(order)
-                case m.LoadProfile(name):
-                    wanted = m.ReplaceCandidate(profiles.load_named(name), f"profile {name}")
+                case LoadProfile(name):
+                    wanted = ReplaceCandidate(profiles.load_named(name), f"profile {name}")
                     self._apply(replace_command(order, wanted))
-                case m.SaveProfile(name):
+                case SaveProfile(name):
                     profiles.save(name, self._session.main.settings)
                     self._status = replace(self._status, profiles=profiles.names())
                     self._say(f"profile {name} saved")
-                case m.Pause() | m.Step() | m.Speed() | m.Seek() | m.Loop() | m.SetErrors() as command:
+                case Pause() | Step() | Speed() | Seek() | Loop() | SetErrors() as command:
                     self._source.control(command)
-                case m.Record(on):
+                case Record(on):
                     self._record(on)
-                case m.Play() | m.Rename() | m.Share() | m.SetDeclination() as command:
+                case Play() | Rename() | Share() | SetDeclination() as command:
                     self._librarian.take(command, self._session.main.settings)
-                case m.Mark(text):
+                case Mark(text):
                     self._mark(order.who, text)
-                case m.Calibrate() as command:
+                case Calibrate() as command:
                     self._say(self._before.calibrate(command))
-                case m.CheckFirst() as command:
+                case CheckFirst() as command:
                     self._before.check(command, {s: store.role for s, store in self._session.stores.items()})
-                case m.OpenTown():
+                case OpenTown():
                     self._annexe.open()
-                case m.TakeLesson(name):
+                case TakeLesson(name):
                     errors, settings = lessons.lesson(name)
                     self._source.control(errors)
-                    self._apply(replace_command(order, m.ReplaceCandidate(settings, f"lesson {name}")))
-                    self._apply(replace_command(order, m.ApplyCandidate()))
+                    self._apply(replace_command(order, ReplaceCandidate(settings, f"lesson {name}")))
+                    self._apply(replace_command(order, ApplyCandidate()))
                     self._status = replace(self._status, lesson=name)
-                case m.Swing(angle_deg):
+                case Swing(angle_deg):
                     spec = lessons.pendulum(angle_deg)
                     self._coming.put_nowait((spec, open_source(spec, stretches=True)))
                 case _:
                     self._apply(order)
-        except m.InputError as error:
+        except InputError as error:
             self._say(str(error))
         if self._session.wanted is not None:
             self._work.set()
 
-    def _apply(self, order: m.Order) -> None:
+    def _apply(self, order: Order) -> None:
         """Apply it, and record it: one that is refused is refused again in a replay."""
         try:
             self._session.apply(order)
@@ -391,14 +424,14 @@ class Viewer:
 
     def _mark(self, who: str, text: str) -> None:
         if self._recorder is None:
-            raise m.InputError("no recording to mark: start one first")
+            raise InputError("no recording to mark: start one first")
         self._recorder.marker(who, text)
 
     def _mark_preflight(self, told: str) -> None:
         if self._recorder is not None:
             self._recorder.marker("pre-flight", told)
 
-    def _record_walk(self, feet: tuple[m.FootView, ...]) -> None:
+    def _record_walk(self, feet: tuple[FootView, ...]) -> None:
         """Where the feet are drawn, and the strides that ended since the last look."""
         if self._recorder is None or time.monotonic() < self._posed_s + POSES_S:
             return
@@ -434,21 +467,21 @@ class Viewer:
         seen = -1
         while True:
             await asyncio.sleep(HALT_S)
-            halted = self._source.link in (m.Link.PAUSED, m.Link.ENDED)
+            halted = self._source.link in (Link.PAUSED, Link.ENDED)
             if halted and self._session.main.settings.hindsight and self._session.number != seen:
-                self._take_order(m.Order(m.LookBack(), "hindsight", time.monotonic_ns()))
+                self._take_order(Order(LookBack(), "hindsight", time.monotonic_ns()))
                 seen = self._session.number
 
-    def _find_gains(self, order: m.Order) -> None:
+    def _find_gains(self, order: Order) -> None:
         if self._sweeping is not None and not self._sweeping.done():
-            raise m.InputError("the search for gains is still running")
+            raise InputError("the search for gains is still running")
         if not self._session.main.feet:
-            raise m.InputError("no samples yet: gains can be searched once there is a walk")
+            raise InputError("no samples yet: gains can be searched once there is a walk")
         gains.demand_gains(self._session.main.settings)
         self._status = replace(self._status, sweep_progress=0.0, sweep=None)
         self._sweeping = asyncio.create_task(self._sweep(order), name="sweep")
 
-    async def _sweep(self, order: m.Order) -> None:
+    async def _sweep(self, order: Order) -> None:
         loop = asyncio.get_running_loop()
         settings, epoch = self._session.main.settings, self._session.epoch
         stores = [store.samples.share() for store in self._session.stores.values()]
@@ -456,7 +489,7 @@ class Viewer:
         halves = np.array_split(gains.GAINS_STANCE, 2)  # two cores; each sees the whole walk
         done = np.zeros((len(stores), len(halves)))
 
-        def closures(i: int, k: int) -> m.Floats:
+        def closures(i: int, k: int) -> Floats:
             def progress(share: float) -> bool:
                 done[i, k] = share
                 total = float(done.mean())
@@ -474,7 +507,7 @@ class Viewer:
         self._status = replace(self._status, sweep=found, sweep_progress=None)
         if epoch == self._session.epoch:
             best = settings.with_changes({"gain_stance": found.best[0], "gain_swing": found.best[1]})
-            self._take_order(replace_command(order, m.ReplaceCandidate(best, "best gains")))
+            self._take_order(replace_command(order, ReplaceCandidate(best, "best gains")))
 
     def _tell_progress(self, done: float) -> None:
         if self._status.sweep_progress is not None:
@@ -514,7 +547,7 @@ class Viewer:
             await asyncio.sleep(max(0.001, due - EARLY_S - time.monotonic()))
             self._fresh.clear()
 
-    def _status_now(self) -> m.Status:
+    def _status_now(self) -> Status:
         now = time.monotonic()
         if self._message_until and now > self._message_until:
             self._say("")
@@ -525,7 +558,7 @@ class Viewer:
             link=link,
             detail=self._source.detail,
             replay=self._source.replay,
-            stale_s=now - self._last_sample_s if link in (m.Link.LIVE, m.Link.LOST) else 0.0,
+            stale_s=now - self._last_sample_s if link in (Link.LIVE, Link.LOST) else 0.0,
             speed=self._source.speed,
             loop=self._source.loop,
             position_s=self._source.position_s,
@@ -559,6 +592,6 @@ def reestimated(job: Reestimation) -> Track:
     return job.run()
 
 
-def replace_command(order: m.Order, command: m.Command) -> m.Order:
+def replace_command(order: Order, command: Command) -> Order:
     """The same person's order, as another command."""
     return order._replace(command=command)

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from app.formats import gpx
 from app.formats.names import file_name, with_suffix_of
-from app.motion import InputError, Reference, ShelfFile
+from app.motion.basics import InputError
+from app.motion.status import Reference, ShelfFile
 from app.outputs.files import beside
 from app.sources.files import load, read_bytes
 

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 
 from app import __version__, opinions
-from app.motion import InputError, Samples
+from app.motion.basics import InputError
+from app.motion.samples import Samples
 from app.outputs.report import number, report
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec

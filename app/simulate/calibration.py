@@ -12,7 +12,9 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from app.motion import Floats, InputError, Recording, Role, Samples
+from app.motion.basics import Floats, InputError, Role
+from app.motion.recording import Recording
+from app.motion.samples import Samples
 from app.simulate.sensors import FIELD_N_UT, STANDARD_GRAVITY, TABLE_II_NOISE
 
 #: Appendix B's turns: axis (0 x, 1 y, 2 z) and degrees; 0 is a pause.

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.simulate.options import WalkOptions
 
 #: Lane 7 of the papers (dissertation, ch. V): its length; the straights are a standard track's.

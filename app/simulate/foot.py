@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats, Ints
+from app.motion.basics import Floats, Ints
 from app.simulate.gait import FLAT_SHARE, Gait, Profile
 
 

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.special import erf
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 #: Where preswing, swing and initial contact end, and how long the foot stands flat: shares of a cycle.
 TOE_OFF, HEEL_STRIKE, FOOT_FLAT, FLAT_SHARE = 0.1, 0.5, 0.6, 0.4

@@ -14,7 +14,10 @@ from functools import partial
 
 import numpy as np
 
-from app.motion import Floats, InputError, Ints, MotionId, Recording, Samples, Truth
+from app.motion.basics import Floats, InputError, Ints, MotionId
+from app.motion.recording import Recording
+from app.motion.samples import Samples
+from app.motion.source import Truth
 from app.simulate.foot import Motion, rotate_to_body
 from app.simulate.gestures_actions import (
     Action,

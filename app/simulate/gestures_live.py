@@ -12,7 +12,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats, MotionId, Sample, Vector
+from app.motion.basics import Floats, MotionId, Vector
+from app.motion.samples import Sample
 from app.simulate.gestures import FEET, PARTS, action_of, motion_of, other_foot
 from app.simulate.gestures_actions import CHANNELS, Action, add_up, drawer, give
 from app.simulate.gestures_options import GestureOptions

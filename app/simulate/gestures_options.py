@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any, NamedTuple
 
-from app.motion import InputError, MotionId
+from app.motion.basics import InputError, MotionId
 
 #: What feet do that asks for nothing.
 IDLE = ("none", "shift", "tap")

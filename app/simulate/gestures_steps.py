@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.simulate.gait import minimum_jerk
 
 

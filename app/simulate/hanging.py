@@ -8,7 +8,10 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats, InputError, Recording, Role, Samples, Truth
+from app.motion.basics import Floats, InputError, Role
+from app.motion.recording import Recording
+from app.motion.samples import Samples
+from app.motion.source import Truth
 from app.simulate.pendulum import Pendulum, Swinging, read, swing
 
 SENSOR = "pendulum"

@@ -10,7 +10,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from app.limits import Limit, Limited, Value, setting
-from app.motion import InputError, Sample, SetErrors, Vector
+from app.motion.basics import InputError, Vector
+from app.motion.commands import SetErrors
+from app.motion.samples import Sample
 from app.settings import Settings
 from app.simulate.sensors import STANDARD_GRAVITY, TABLE_II_NOISE
 

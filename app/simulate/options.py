@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 MODELS = ("smooth", "papers")
 UNITS = (

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from app.motion import SAMPLE_WIDTH, Floats, Vector
+from app.motion.basics import Floats, Vector
+from app.motion.samples import SAMPLE_WIDTH
 from app.simulate.sensors import MICROTESLA_PER_GAUSS
 
 #: Dissertation, III-G: |B_e| and its inclination.

@@ -13,7 +13,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion import Floats, Samples, Vector, role_of
+from app.motion.basics import Floats, Vector, role_of
+from app.motion.samples import Samples
 from app.simulate.foot import Motion, rotate_to_body
 from app.simulate.options import WalkOptions
 

@@ -14,7 +14,10 @@ from functools import partial
 
 import numpy as np
 
-from app.motion import Column, Floats, InputError, Recording, Samples, Truth
+from app.motion.basics import Floats, InputError
+from app.motion.recording import Recording
+from app.motion.samples import Column, Samples
+from app.motion.source import Truth
 from app.simulate.course import TREAD_M, Course, Places, course_of
 from app.simulate.foot import FootMotion, Swing, Timing, join_footprints
 from app.simulate.gait import FLAT_SHARE, papers_gait, papers_reach, smooth_gait

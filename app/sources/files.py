@@ -7,7 +7,8 @@ from pathlib import Path
 
 from app.formats.options import parse_options
 from app.formats.reading import read
-from app.motion import InputError, Recording
+from app.motion.basics import InputError
+from app.motion.recording import Recording
 
 MOST_BYTES = 2_000_000_000
 

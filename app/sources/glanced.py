@@ -9,7 +9,9 @@ from typing import BinaryIO
 
 from app.formats.glance import glance
 from app.formats.wire.stream import Counters
-from app.motion import InputError, Link, Outline, ReplayCommand, SourceInfo
+from app.motion.basics import InputError
+from app.motion.commands import ReplayCommand
+from app.motion.source import Link, Outline, SourceInfo
 from app.settings import Settings
 from app.sources.files import printable
 from app.sources.source import Item

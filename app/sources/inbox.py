@@ -8,7 +8,9 @@ import time
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 
 from app.formats.wire.stream import Counters
-from app.motion import Link, Role, Sample, SourceInfo, role_of
+from app.motion.basics import Role, role_of
+from app.motion.samples import Sample
+from app.motion.source import Link, SourceInfo
 from app.sources.source import Item, Live
 
 #: Between two looks: a burst costs one turn of the loop, not one for each sample.

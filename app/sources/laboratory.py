@@ -6,7 +6,10 @@ from collections.abc import AsyncIterator, Iterable
 from dataclasses import asdict, replace
 from typing import Any
 
-from app.motion import InputError, Recording, ReplayCommand, Sample, SetErrors, Stretch
+from app.motion.basics import InputError
+from app.motion.commands import ReplayCommand, SetErrors
+from app.motion.recording import Recording, Stretch
+from app.motion.samples import Sample
 from app.simulate.lab import PERFECT, Lab
 from app.sources.replay import Replay
 from app.sources.source import Item

@@ -7,7 +7,8 @@ from collections.abc import Iterator
 from functools import cached_property
 
 from app.formats.states import joined, read_state, read_way
-from app.motion import Landing, Recording, Saved, Stretch, Way
+from app.motion.estimate import Saved, Way
+from app.motion.recording import Landing, Recording, Stretch
 from app.sources.timeline import Timeline
 
 #: A leap over less than this is not worth it.

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from pathlib import Path
 
 from app.formats.options import KEYS, Options, parse_options
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.spec import Spec
 
 LOOPBACK = "127.0.0.1"

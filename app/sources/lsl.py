@@ -8,7 +8,7 @@ import time
 from typing import Any
 
 from app.formats.wire.lsl import TYPE, Channel, StreamReader, sensor_of
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.inbox import Inbox
 from app.sources.listening import options_of
 from app.sources.spec import Spec

@@ -8,7 +8,9 @@ from functools import partial
 
 import numpy as np
 
-from app.motion import InputError, Recording, Truth
+from app.motion.basics import InputError
+from app.motion.recording import Recording
+from app.motion.source import Truth
 from app.simulate.calibration import make_calibration
 from app.simulate.gestures import make_gestures
 from app.simulate.hanging import make_pendulum

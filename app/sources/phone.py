@@ -9,7 +9,7 @@ from app.formats.wire.intake import Intake
 from app.formats.wire.message import Malformed
 from app.formats.wire.reply import Ack, encode_ack, encode_refusal
 from app.formats.wire.sensorlogger import MOST_PHONES, Phone, parse, sensor_and_axes
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.inbox import Inbox
 from app.sources.listening import options_of
 from app.sources.spec import Spec

@@ -15,31 +15,26 @@ from collections.abc import AsyncIterator, Mapping, Sequence
 from typing import Protocol
 
 from app.formats.wire.stream import Counters
-from app.motion import (
+from app.motion.basics import InputError
+from app.motion.commands import (
     ApplyCandidate,
     Command,
     DropCandidate,
-    InputError,
-    Journal,
-    Landing,
-    Link,
     Loop,
     Order,
     Pause,
-    Recording,
     ReplaceCandidate,
     ReplayCommand,
     RestartHere,
-    Sample,
     Seek,
     SetApplyAtOnce,
     SetErrors,
-    SourceInfo,
     Speed,
     Step,
-    Stretch,
-    Truth,
 )
+from app.motion.recording import Journal, Landing, Recording, Stretch
+from app.motion.samples import Sample
+from app.motion.source import Link, SourceInfo, Truth
 from app.settings import Settings
 from app.sources.landing import Landings
 from app.sources.source import Item

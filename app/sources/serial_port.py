@@ -21,7 +21,9 @@ from app.formats.mounting import Axes, describe
 from app.formats.wire.catalogue import Decoder
 from app.formats.wire.identify import Found
 from app.formats.wire.stream import Counters
-from app.motion import GAP_NS, InputError, Link, Sample, SourceInfo, role_of
+from app.motion.basics import InputError, role_of
+from app.motion.samples import GAP_NS, Sample
+from app.motion.source import Link, SourceInfo
 from app.sources.inbox import Inbox
 from app.sources.port import Port, PortLostError, open_port, refusal
 from app.sources.source import Item, Live

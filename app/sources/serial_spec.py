@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from app.formats.mounting import parse_axes
 from app.formats.options import FEET
 from app.formats.wire.catalogue import KINDS
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.serial_port import PortSpec, SerialPort
 from app.sources.source import Source
 from app.sources.spec import Spec

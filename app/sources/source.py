@@ -6,17 +6,11 @@ from collections.abc import AsyncIterator, Mapping
 from typing import Protocol
 
 from app.formats.wire.stream import Counters
-from app.motion import (
-    InputError,
-    Landing,
-    Link,
-    Order,
-    ReplayCommand,
-    RestartHere,
-    Sample,
-    SourceInfo,
-    Stretch,
-)
+from app.motion.basics import InputError
+from app.motion.commands import Order, ReplayCommand, RestartHere
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import Sample
+from app.motion.source import Link, SourceInfo
 from app.settings import Settings
 
 #: What a source yields. Only a replay yields orders (those recorded) and ``RestartHere``, and stretches only

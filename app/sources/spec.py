@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from urllib.parse import unquote
 
 from app.formats.options import KEYS
-from app.motion import InputError
+from app.motion.basics import InputError
 
 LIVE = ("serial", "ws", "udp", "phone", "lsl")
 KINDS = ("replay", "sim", *LIVE)

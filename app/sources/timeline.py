@@ -7,7 +7,9 @@ from collections.abc import Iterator
 import numpy as np
 
 from app.blocks import BLOCK
-from app.motion import Ints, Quaternion, Recording, Rows, Sample, Samples, Stretch
+from app.motion.basics import Ints, Quaternion
+from app.motion.recording import Recording, Stretch
+from app.motion.samples import Rows, Sample, Samples
 
 
 class Timeline:

@@ -7,7 +7,8 @@ import logging
 from collections.abc import AsyncIterator, Iterable, Mapping, Sequence
 
 from app.formats.wire.stream import Counters
-from app.motion import Link, Sample, SourceInfo
+from app.motion.samples import Sample
+from app.motion.source import Link, SourceInfo
 from app.sources.inbox import Inbox
 from app.sources.source import Item, Live, Source
 

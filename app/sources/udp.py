@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from app.formats.wire.catalogue import KINDS
 from app.formats.wire.datagrams import Datagrams
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.catcher import Catcher
 from app.sources.inbox import REST_S, Inbox
 from app.sources.listening import bind, options_of, place_of

@@ -9,7 +9,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats, Quaternion
+from app.motion.basics import Floats, Quaternion
 from app.simulate.foot import rotate_to_body
 from app.simulate.sensors import FIELD_N_UT, STANDARD_GRAVITY
 from app.studies.attitudes import criterion, fqa, gauss_newton, quest, triad

@@ -12,7 +12,7 @@ import numpy as np
 
 from app.compiled import kernel
 from app.estimator.attitude import fqa_tilt, fqa_yaw
-from app.motion import Floats, Quaternion, Vector
+from app.motion.basics import Floats, Quaternion, Vector
 from app.rotation import conjugate, multiply, normalise, rotate
 
 #: Gravity's reading in n: an accelerometer at rest points up.

@@ -9,7 +9,8 @@ from typing import NamedTuple
 import numpy as np
 
 from app.estimator.tracker import track
-from app.motion import ATTITUDE, POSITION, Floats, Ints
+from app.motion.basics import Floats, Ints
+from app.motion.estimate import ATTITUDE, POSITION
 from app.settings import Settings
 from app.studies import thesis
 from app.studies.legs import Leg, Sensor, walk_legs

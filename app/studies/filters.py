@@ -13,7 +13,7 @@ from app.estimator.attitude import (
     static_quaternion,
     turn_between,
 )
-from app.motion import Floats, Quaternion
+from app.motion.basics import Floats, Quaternion
 from app.rotation import multiply, normalise, pitch_of, roll_of, yaw_of
 
 

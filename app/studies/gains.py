@@ -10,7 +10,9 @@ import numpy as np
 
 from app.estimator.sweep import sweep
 from app.estimator.tracker import store, track
-from app.motion import POSITION, Floats, Samples
+from app.motion.basics import Floats
+from app.motion.estimate import POSITION
+from app.motion.samples import Samples
 from app.settings import Settings
 from app.simulate.options import WalkOptions
 from app.simulate.walk import simulate

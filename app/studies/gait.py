@@ -12,7 +12,8 @@ from scipy.integrate import cumulative_trapezoid
 from app.compiled import kernel
 from app.estimator.gait import STANCE, SWING, gait_phase
 from app.estimator.strapdown import bias_of_swing
-from app.motion import Column, Floats
+from app.motion.basics import Floats
+from app.motion.samples import Column
 from app.simulate.gait import minimum_jerk
 from app.simulate.options import WalkOptions
 from app.simulate.walk import simulate

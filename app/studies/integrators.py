@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.studies import steps
 from app.studies.steps import METHODS, Profile, even_grid, stretched_grid, trapezoid
 from app.studies.verdicts import ROUNDED, Judge

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.studies import steps
 from app.studies.words import Curve, Plot
 

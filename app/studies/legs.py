@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Floats, Samples, Vector
+from app.motion.basics import Floats, Vector
+from app.motion.samples import Samples
 from app.simulate.foot import FootMotion, Motion, Swing, Timing, join_footprints
 from app.simulate.gait import FLAT_SHARE, smooth_gait
 from app.simulate.options import WalkOptions

@@ -10,7 +10,9 @@ import numpy as np
 from app.estimator import state as s
 from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.papers_run import run
-from app.motion import ROW_WIDTH, Column, Floats, Vector
+from app.motion.basics import Floats, Vector
+from app.motion.estimate import ROW_WIDTH
+from app.motion.samples import Column
 from app.settings import Settings
 from app.simulate.options import WalkOptions
 from app.simulate.sensors import MICROTESLA_PER_GAUSS, STANDARD_GRAVITY

@@ -8,7 +8,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import SAMPLE_WIDTH, Floats
+from app.motion.basics import Floats
+from app.motion.samples import SAMPLE_WIDTH
 from app.simulate.foot import rotate_to_body
 from app.simulate.options import WalkOptions
 from app.simulate.pendulum import Pendulum, read, swing

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from app.motion import Floats, Quaternion, Vector
+from app.motion.basics import Floats, Quaternion, Vector
 from app.rotation import from_yaw_pitch_roll
 from app.simulate.pendulum import Pendulum, read, swing
 from app.studies.filters import roll_pitch_yaw_deg, run_filter

@@ -8,7 +8,7 @@ from dataclasses import asdict, dataclass
 
 import numpy as np
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.studies.experiments import Case, Outcome, path_plot, rows_of, table_of, walk_case
 from app.studies.legs import Leg, Sensor, leg
 from app.studies.verdicts import Judge

@@ -7,7 +7,7 @@ from collections.abc import Callable
 import numpy as np
 from scipy.special import erf
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.simulate.gait import SIGMA
 
 #: One step: it stands until 0.5 s, swings for 0.4 s, and stands again until 1.0 s.

@@ -11,7 +11,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion import Column, Floats, Ints
+from app.motion.basics import Floats, Ints
+from app.motion.samples import Column
 from app.simulate.foot import rotate_to_body
 
 #: Swings closer together than this are one: his figures show no flicker within a swing.

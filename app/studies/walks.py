@@ -7,7 +7,7 @@ from dataclasses import asdict, dataclass, replace
 
 import numpy as np
 
-from app.motion import Floats, Vector
+from app.motion.basics import Floats, Vector
 from app.studies.late_start import SHORT, shortfall_plot
 from app.studies.monte_carlo import BLOCK, Errors, WalkConfig, ideal, walk_many
 from app.studies.verdicts import SPREAD_SIGMAS, Judge

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any, NamedTuple
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 
 class Verdict(StrEnum):

@@ -11,7 +11,7 @@ import pytest
 from app.calibration.guide import Guide, coverage
 from app.calibration.steps import FIELD_STEPS, STEPS
 from app.calibration.words import Calibration, Correction
-from app.motion import Sample
+from app.motion.samples import Sample
 from app.simulate.calibration import Calibrating, Errors, make_calibration
 from app.sources.timeline import Timeline
 

@@ -9,7 +9,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.calibration.words import Calibration, Correction, from_json, to_json
-from app.motion import InputError
+from app.motion.basics import InputError
 
 KEPT = Calibration(
     "gx1 1234", "2026-11-22T03:00:00+0000", "fit",

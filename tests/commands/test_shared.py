@@ -10,7 +10,7 @@ import pytest
 
 from app.commands.shared import Parser, add_door, door_options, tell
 from app.door.access import Access, Certificate
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 @pytest.fixture(autouse=True)

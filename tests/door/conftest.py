@@ -20,7 +20,7 @@ import websockets.sync.client as ws
 
 from app.door.access import Access
 from app.door.front import Door
-from app.motion import GuiRule
+from app.motion.door import GuiRule
 
 ACCESS = {field.name for field in fields(Access)}
 VERSION = f"viser-v{viser.__version__}"

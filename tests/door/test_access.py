@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.door.access import Access, is_loopback, made_token
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 @pytest.mark.parametrize("host", ["0.0.0.0", "::", "192.168.1.5", "labpc", "", "evil.localhost"])

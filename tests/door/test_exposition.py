@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from app.door.counters import Counters
 from app.door.exposition import exposition, of_counters
-from app.motion import Measure
+from app.motion.door import Measure
 
 LINE = re.compile(r'([a-z_]+)(?:\{((?:[a-z_]+="(?:[^"\\\n]|\\.)*",?)+)\})? (\S+)')
 LABEL = re.compile(r'([a-z_]+)="((?:[^"\\]|\\.)*)"')

@@ -13,7 +13,7 @@ import pytest
 from app.door.access import Access
 from app.door.files import Files
 from app.door.front import Door
-from app.motion import InputError
+from app.motion.basics import InputError
 
 OPERATOR, VIEWER = "o" * 22, "v" * 22
 BYTES = "application/octet-stream"

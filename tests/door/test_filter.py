@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.door.filter import REFUSED_TYPES, Dropped, Malformed, admit
-from app.motion import GuiRule
+from app.motion.door import GuiRule
 
 RULES = {
     "slider": GuiRule("number", 0.0, 2.0),

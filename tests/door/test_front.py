@@ -11,7 +11,7 @@ import pytest
 
 from app.door.access import Access
 from app.door.front import Door
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def door(**more: Any) -> Door:

@@ -8,7 +8,8 @@ from collections.abc import Callable
 from app.door.access import Access
 from app.door.front import Door
 from app.door.hand_in import HandIn
-from app.motion import HAND_IN, InputError
+from app.motion.basics import InputError
+from app.motion.door import HAND_IN
 
 OPERATOR, VIEWER = "o" * 22, "v" * 22
 

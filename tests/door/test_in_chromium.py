@@ -13,7 +13,7 @@ import viser
 from playwright.sync_api import Browser, BrowserContext, Page
 from viser import uplot
 
-from app.motion import GuiRule
+from app.motion.door import GuiRule
 
 DRAWN = """() => {
     const points = window.__viserTestpoints, tree = window.__viserSceneTree;

@@ -13,7 +13,7 @@ import pytest
 import websockets.exceptions
 
 from app.door import listening, upstream
-from app.motion import Measure
+from app.motion.door import Measure
 
 Open = Callable[..., Any]
 EVIL_HOSTS = [

@@ -19,7 +19,7 @@ from cryptography import x509
 from app.door import selfmade, tls
 from app.door.access import Access, Certificate
 from app.door.front import Door
-from app.motion import InputError
+from app.motion.basics import InputError
 from tests.door.conftest import VERSION
 
 NOW = datetime.datetime.now(datetime.UTC)

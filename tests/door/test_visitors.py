@@ -9,7 +9,7 @@ import msgspec
 import pytest
 
 from app.door.access import Visitor
-from app.motion import GuiRule
+from app.motion.door import GuiRule
 from tests.door.test_filter import CAMERA
 
 pack = msgspec.msgpack.encode

@@ -9,7 +9,7 @@ import numpy as np
 import scipy.io
 
 from app.estimator.tracker import Tracker
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.settings import Settings
 from app.sources.files import load
 from tests.estimator.walks import estimate, rows_of

@@ -21,7 +21,7 @@ from app.estimator.attitude import (
     static_quaternion,
     turn_between,
 )
-from app.motion import Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
 from app.rotation import exponential, from_yaw_pitch_roll, multiply, rotate, yaw_of
 
 IDENTITY: Quaternion = (1.0, 0.0, 0.0, 0.0)

@@ -7,7 +7,7 @@ import pytest
 
 from app.estimator.bias import learnt
 from app.estimator.tracker import track
-from app.motion import GyroBias, Samples
+from app.motion.samples import GyroBias, Samples
 from app.settings import Settings
 from tests.estimator.walks import estimate, foot, rows_of, walk
 

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from app.estimator.compass import FOOTPRINTS, judged
-from app.motion import Column, Samples
+from app.motion.samples import Column, Samples
 from app.settings import Settings
 from tests.estimator.walks import estimate, foot, samples_of
 

@@ -8,7 +8,8 @@ import pytest
 from app.estimator import smoother
 from app.estimator.feet import Worn, link_worn
 from app.estimator.tracker import Tracker
-from app.motion import Floats, Role, Samples
+from app.motion.basics import Floats, Role
+from app.motion.samples import Samples
 from app.settings import Settings
 from tests.estimator.walks import rows_of, table_of, walk
 

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.estimator.gait import STANCE, SWING, gait_phase
-from app.motion import Floats
+from app.motion.basics import Floats
 from tests.estimator.walks import estimate, foot, rows_of
 
 TH = 1.0

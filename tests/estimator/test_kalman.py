@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.estimator.tracker import Tracker
-from app.motion import SAMPLE_WIDTH, Samples
+from app.motion.samples import SAMPLE_WIDTH, Samples
 from app.rotation import from_yaw_pitch_roll, rotate
 from app.settings import Settings
 from tests.estimator.walks import G, estimate, foot, rows_of, samples_of, still, table_of, walk, without

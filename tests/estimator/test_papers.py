@@ -9,7 +9,9 @@ import numpy as np
 import pytest
 
 from app.estimator.tracker import Tracker
-from app.motion import ROW_WIDTH, Floats, Samples
+from app.motion.basics import Floats
+from app.motion.estimate import ROW_WIDTH
+from app.motion.samples import Samples
 from app.rotation import yaw_of
 from app.settings import Settings
 from tests.estimator.walks import G, estimate, foot, rows_of, samples_of, still, table_of, walk, without

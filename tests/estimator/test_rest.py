@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.motion import Floats, Samples
+from app.motion.basics import Floats
+from app.motion.samples import Samples
 from app.rotation import from_yaw, from_yaw_pitch_roll, multiply, pitch_of, roll_of, rotate, yaw_of
 from tests.estimator.walks import G, estimate, foot, rows_of, samples_of, still, without
 

@@ -7,7 +7,8 @@ import numpy as np
 from app.blocks import BLOCK
 from app.estimator.smoother import finish, smooth
 from app.estimator.tracker import Tracker
-from app.motion import Floats, Samples
+from app.motion.basics import Floats
+from app.motion.samples import Samples
 from app.settings import BUILT_IN, Settings
 from tests.estimator.scoring import rmse
 from tests.estimator.walks import foot, rows_of, still, table_of, walk, without

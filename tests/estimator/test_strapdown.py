@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 
 from app.estimator.strapdown import bias_of_swing, motion_acceleration, trapezoid, without_bias
 from app.estimator.tracker import Tracker, track
-from app.motion import SAMPLE_WIDTH, Floats, Role, Samples, Vector
+from app.motion.basics import Floats, Role, Vector
+from app.motion.samples import SAMPLE_WIDTH, Samples
 from app.rotation import from_yaw_pitch_roll, rotate
 from app.settings import Settings
 from tests.estimator.walks import G, estimate, foot, rows_of, samples_of, still, walk

@@ -11,7 +11,9 @@ from hypothesis import strategies as st
 
 from app.blocks import BLOCK, Blocks
 from app.estimator.tracker import Tracker
-from app.motion import ROW_WIDTH, SAMPLE_WIDTH, Floats, Samples
+from app.motion.basics import Floats
+from app.motion.estimate import ROW_WIDTH
+from app.motion.samples import SAMPLE_WIDTH, Samples
 from app.settings import Settings
 from tests.estimator.walks import PAPERS, estimate, foot, rows_of, still, table_of, walk, without
 

@@ -8,7 +8,8 @@ import numpy as np
 
 from app.blocks import Blocks
 from app.estimator.tracker import Tracker, track
-from app.motion import SAMPLE_WIDTH, Floats, Role, Sample, Samples
+from app.motion.basics import Floats, Role
+from app.motion.samples import SAMPLE_WIDTH, Sample, Samples
 from app.settings import Settings
 from app.simulate.walk import SimulatedWalk, make_walk
 

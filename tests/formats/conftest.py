@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from app.motion import Floats
+from app.motion.basics import Floats
 
 
 @dataclass(frozen=True)

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 
 from app.formats.clean import BACKWARD, LEAPT, NOT_FINITE, REPEATED, clean, countable
 from app.formats.raw import NO_STAMP, RawFoot
-from app.motion import InputError
+from app.motion.basics import InputError
 
 STAMPS = st.lists(
     st.one_of(st.integers(-50, 50), st.sampled_from([NO_STAMP, 2**62, -(2**62), 2**53])),

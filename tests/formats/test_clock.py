@@ -3,7 +3,7 @@ import pytest
 
 from app.formats.clock import stamps
 from app.formats.raw import NO_STAMP
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def ns(cells: list[str], rate_hz: float | None = None) -> list[int]:

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from app.formats.reading import read
-from app.motion import InputError
+from app.motion.basics import InputError
 
 AXES = ["acc_x", "acc_y", "acc_z", "gyr_x", "gyr_y", "gyr_z"]
 UP = np.array([1.0, -1.0, -1.0])  # gaitmap's sensors are z-up

@@ -12,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats import geo
-from app.motion import InputError
+from app.motion.basics import InputError
 
 WALK = np.array([[0.0, 0.0, 0.0], [100.0, 0.0, 0.0], [100.0, 50.0, -2.0]])
 

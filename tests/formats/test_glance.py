@@ -12,19 +12,21 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app import motion as m
 from app.formats import glance as glances
 from app.formats import mcap
+from app.motion.basics import Role
+from app.motion.estimate import Saved, Way
+from app.motion.source import Outline
 from app.settings import Settings
 from tests.formats.walks import keeper, random_samples, write
 
 WAYS = {
-    "left": [m.Way(0, 5, np.full((2, 2, 3), 1, np.float32)), m.Way(5, 9, np.full((1, 2, 3), 2, np.float32))],
-    "right": [m.Way(0, 6, np.full((1, 2, 3), 3, np.float32))],
+    "left": [Way(0, 5, np.full((2, 2, 3), 1, np.float32)), Way(5, 9, np.full((1, 2, 3), 2, np.float32))],
+    "right": [Way(0, 6, np.full((1, 2, 3), 3, np.float32))],
 }
 
 
-STATE = m.Saved(Settings(), 1, b"", (), 0, 0.0, None)
+STATE = Saved(Settings(), 1, b"", (), 0, 0.0, None)
 
 
 def a_file() -> bytes:
@@ -45,7 +47,7 @@ def a_file() -> bytes:
 WHOLE = a_file()
 
 
-def at_a_glance(data: bytes) -> m.Outline | None:
+def at_a_glance(data: bytes) -> Outline | None:
     return glances.glance("x", len(data), lambda at, count: data[at : at + count])
 
 
@@ -53,9 +55,9 @@ def test_it_shows_the_ways_and_the_duration() -> None:
     shown = at_a_glance(WHOLE)
     assert shown is not None
     ways = dict(shown.ways)
-    assert list(ways) == [m.Role.LEFT, m.Role.RIGHT]
-    assert ways[m.Role.LEFT][:, 0, 0].tolist() == [1.0, 1.0, 2.0]
-    assert ways[m.Role.RIGHT][:, 0, 0].tolist() == [3.0]
+    assert list(ways) == [Role.LEFT, Role.RIGHT]
+    assert ways[Role.LEFT][:, 0, 0].tolist() == [1.0, 1.0, 2.0]
+    assert ways[Role.RIGHT][:, 0, 0].tolist() == [3.0]
     assert shown.duration_s == pytest.approx(39 * 5e-3)
 
 

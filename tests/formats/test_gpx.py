@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats import geo, gpx
-from app.motion import InputError
+from app.motion.basics import InputError
 
 ways = st.lists(st.tuples(*[st.floats(-500.0, 500.0)] * 2), min_size=1, max_size=8)
 

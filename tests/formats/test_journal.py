@@ -8,33 +8,48 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app import motion as m
 from app.formats import journal
+from app.motion.commands import (
+    ApplyCandidate,
+    DropCandidate,
+    KeepAs,
+    KnowBias,
+    LookBack,
+    Order,
+    ReplaceCandidate,
+    ResetHeading,
+    RestartHere,
+    SessionCommand,
+    SetApplyAtOnce,
+    SetCandidate,
+    SwapAB,
+    Undo,
+)
 from app.settings import Settings
 
 COMMANDS = [
-    m.SetCandidate((("gain_swing", 0.1 + 0.2), ("magnetometer", True), ("estimator", "papers"))),
-    m.ReplaceCandidate(Settings().with_changes({"gain_swing": 0.3}), "profile Ann"),
-    m.ApplyCandidate(),
-    m.DropCandidate(),
-    m.Undo(),
-    m.SetApplyAtOnce(True),
-    m.KeepAs("B"),
-    m.SwapAB(),
-    m.ResetHeading(),
-    m.RestartHere(),
-    m.LookBack(),
-    m.KnowBias("left", (0.1 + 0.2, -0.004, 0.0), (3e-4, 1e-3, 0.5), "2026-11-20"),
+    SetCandidate((("gain_swing", 0.1 + 0.2), ("magnetometer", True), ("estimator", "papers"))),
+    ReplaceCandidate(Settings().with_changes({"gain_swing": 0.3}), "profile Ann"),
+    ApplyCandidate(),
+    DropCandidate(),
+    Undo(),
+    SetApplyAtOnce(True),
+    KeepAs("B"),
+    SwapAB(),
+    ResetHeading(),
+    RestartHere(),
+    LookBack(),
+    KnowBias("left", (0.1 + 0.2, -0.004, 0.0), (3e-4, 1e-3, 0.5), "2026-11-20"),
 ]
 
 
 def test_no_command_of_a_session_is_forgotten() -> None:
-    assert {type(command) for command in COMMANDS} == set(get_args(m.SessionCommand))
+    assert {type(command) for command in COMMANDS} == set(get_args(SessionCommand))
 
 
 @pytest.mark.parametrize("command", COMMANDS, ids=lambda c: type(c).__name__)
-def test_an_order_comes_back(command: m.SessionCommand) -> None:
-    order = m.Order(command, "Ann <i>", 12345678901234567)
+def test_an_order_comes_back(command: SessionCommand) -> None:
+    order = Order(command, "Ann <i>", 12345678901234567)
     assert journal.read_order(journal.write_order(7, order)) == (7, order)
 
 

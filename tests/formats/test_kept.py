@@ -11,10 +11,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 
-from app import motion as m
 from app.formats import kept, mcap
 from app.formats.journal import Start
 from app.formats.reading import read
+from app.motion.basics import InputError, Role
+from app.motion.commands import Order, RestartHere, SetCandidate
+from app.motion.samples import Sample
 from app.settings import Settings
 from tests.formats.walks import keeper, random_samples, write
 
@@ -22,7 +24,7 @@ numbers = st.floats(width=64)
 vectors = st.tuples(numbers, numbers, numbers)
 finite = st.floats(-1.0, 1.0)
 any_sample = st.builds(
-    m.Sample,
+    Sample,
     st.sampled_from(["left", "right", "tail/é"]),
     st.integers(0, 2**32 - 1),
     st.integers(-(2**63), 2**63 - 1),
@@ -35,7 +37,7 @@ any_sample = st.builds(
 )
 
 
-def exact(samples: list[m.Sample]) -> list[str]:
+def exact(samples: list[Sample]) -> list[str]:
     return [repr(sample) for sample in samples]  # NaN is not equal to itself, its name is
 
 
@@ -49,7 +51,7 @@ def test_a_recording_has_the_samples_in_columns_and_their_order() -> None:
     samples = random_samples(100)
     recording = read("x.mcap", write(samples))
     assert [len(sensor) for sensor in recording.sensors] == [50, 50]
-    assert [sensor.role for sensor in recording.sensors] == [m.Role.LEFT, m.Role.RIGHT]
+    assert [sensor.role for sensor in recording.sensors] == [Role.LEFT, Role.RIGHT]
     assert recording.journal is not None
     assert recording.journal.arrivals.tolist() == [0, 1] * 50
     left = recording.sensors[0]
@@ -74,7 +76,7 @@ def test_orders_markers_and_settings_stand_where_they_were_given() -> None:
     data = made.begin(0)
     start = Start(Settings().with_changes({"gain_swing": 0.11}), Settings(), True)
     made.start(0, start)
-    order = m.Order(m.SetCandidate((("gain_stance", 0.25), ("magnetometer", False))), "Ann", 12)
+    order = Order(SetCandidate((("gain_stance", 0.25), ("magnetometer", False))), "Ann", 12)
     for i, sample in enumerate(random_samples(30)):
         if i == 11:
             made.order(12, order)
@@ -96,7 +98,7 @@ def test_a_source_that_begins_anew_begins_a_new_walk() -> None:
     made.start(0, Start(Settings(), Settings(), False))
     for sample in samples:
         made.sample(sample)
-    made.order(31, m.Order(m.RestartHere(), kept.SOURCE, 0))
+    made.order(31, Order(RestartHere(), kept.SOURCE, 0))
     made.start(0, Start(changed, changed, False))
     for sample in samples[:10]:
         made.sample(sample)
@@ -113,7 +115,7 @@ def test_cut_at_every_byte_a_prefix_is_left() -> None:
     for length in range(len(data)):
         try:
             found = kept.samples(kept.kept("x", data[:length]))
-        except m.InputError:
+        except InputError:
             continue
         assert found == samples[: len(found)]
         assert len(found) % 3 == 0
@@ -128,7 +130,7 @@ def test_a_flipped_bit_is_an_error_of_one_line_or_costs_one_chunk() -> None:
         damaged[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
         try:
             found = kept.samples(kept.kept("x", bytes(damaged)))
-        except m.InputError as error:
+        except InputError as error:
             assert "\n" not in str(error)
             continue
         assert len(found) >= len(samples) - 6
@@ -149,7 +151,7 @@ def test_a_strangers_file_is_said_to_be_one() -> None:
     writer = mcap.Writer()
     data = writer.begin()
     writer.add(writer.channel("/a", "json", "a", "{}"), 0, 0, 0, b"{}")
-    with pytest.raises(m.InputError, match="another program's"):
+    with pytest.raises(InputError, match="another program's"):
         read("x.mcap", data + writer.chunk() + writer.end())
 
 
@@ -158,5 +160,5 @@ def test_what_a_recording_says_itself_cannot_be_told(option: str) -> None:
     from app.formats.options import parse_options
 
     told = parse_options({option: {"rate": "100", "axes": "x,y,z", "device": "gx1"}[option]})
-    with pytest.raises(m.InputError, match=option):
+    with pytest.raises(InputError, match=option):
         read("x.mcap", write(random_samples(10)), told)

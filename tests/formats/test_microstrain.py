@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from app.formats.reading import read
-from app.motion import InputError
+from app.motion.basics import InputError
 
 G = 9.80665
 DEVICE = "inertial-6253.76535:"

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
 from app.formats.mounting import describe, parse_axes, rotation, snap, turn, write_axes
-from app.motion import InputError
+from app.motion.basics import InputError
 
 SIGNED = [sign + letter for letter in "xyz" for sign in ("", "-")]
 RIGHT_HANDED = [

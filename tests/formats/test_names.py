@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats.names import file_name, with_suffix_of
-from app.motion import InputError
+from app.motion.basics import InputError
 
 nasty = st.text() | st.lists(
     st.sampled_from(["..", ".", "/", "\\", "a", "~", "\0", "\n", "C:", "é", " "])

@@ -2,7 +2,7 @@ import pytest
 
 from app.formats.mounting import parse_axes
 from app.formats.options import Options, parse_options
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def test_all_of_them() -> None:

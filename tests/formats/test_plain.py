@@ -8,7 +8,9 @@ from app.formats.clean import clean
 from app.formats.plain import HEADER, encode, parse
 from app.formats.reading import read
 from app.formats.table import read_head
-from app.motion import InputError, Recording, Role, Samples, role_of
+from app.motion.basics import InputError, Role, role_of
+from app.motion.recording import Recording
+from app.motion.samples import Samples
 
 READING = st.floats(-1e5, 1e5, allow_nan=False)
 FIELD = st.floats(-1e5, 1e5, allow_nan=False)

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats.reading import read
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def mat(**variables: object) -> bytes:

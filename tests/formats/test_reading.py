@@ -9,7 +9,8 @@ from app.formats.mounting import parse_axes
 from app.formats.options import Options
 from app.formats.plain import HEADER
 from app.formats.reading import read
-from app.motion import InputError, Recording, Role
+from app.motion.basics import InputError, Role
+from app.motion.recording import Recording
 
 G = 9.80665
 XIO = "Time (s),Gyroscope X (deg/s),Gyroscope Y (deg/s),Gyroscope Z (deg/s)," + ",".join(

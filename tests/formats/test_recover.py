@@ -8,16 +8,17 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from app import motion as m
 from app.formats import kept
 from app.formats.recover import recover
+from app.motion.basics import InputError
+from app.motion.samples import Sample
 from tests.formats.walks import random_samples, write
 
 SAMPLES = random_samples(40)
 WHOLE = write(SAMPLES, chunk=4)
 
 
-def left_in(data: bytes) -> list[m.Sample]:
+def left_in(data: bytes) -> list[Sample]:
     return kept.samples(kept.kept("x", recover("x", data).data))
 
 
@@ -32,7 +33,7 @@ def test_cut_anywhere_it_gives_every_chunk_before(first: int) -> None:
     for length in range(first, len(WHOLE), 101):
         try:
             found = left_in(WHOLE[:length])
-        except m.InputError as error:
+        except InputError as error:
             assert "not one whole chunk" in str(error)
             continue
         assert found == SAMPLES[: len(found)]
@@ -66,6 +67,6 @@ def test_the_first_chunk_is_not_needed() -> None:
 @settings(max_examples=100)
 @given(st.binary(max_size=300))
 def test_rubbish_is_one_line(data: bytes) -> None:
-    with pytest.raises(m.InputError, match="not one whole chunk") as error:
+    with pytest.raises(InputError, match="not one whole chunk") as error:
         recover("x", data)
     assert "\n" not in str(error.value)

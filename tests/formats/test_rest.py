@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from app.formats.rest import check_units, find_rest
-from app.motion import Floats, InputError, Role, Samples
+from app.motion.basics import Floats, InputError, Role
+from app.motion.samples import Samples
 
 G = 9.80665
 

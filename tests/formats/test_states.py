@@ -8,15 +8,15 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app import motion as m
 from app.formats import states
+from app.motion.estimate import Saved, Way
 from app.settings import BUILT_IN
 
 KEY = b"k" * 32
 numbers = st.floats(width=64, allow_nan=False)
 vectors = st.tuples(numbers, numbers, numbers)
 any_state = st.builds(
-    m.Saved,
+    Saved,
     st.sampled_from(list(BUILT_IN.values())),
     st.integers(0, 2**40),
     st.binary(max_size=60),
@@ -28,17 +28,17 @@ any_state = st.builds(
 
 
 @given(any_state)
-def test_a_state_comes_back_to_the_bit(saved: m.Saved) -> None:
+def test_a_state_comes_back_to_the_bit(saved: Saved) -> None:
     assert states.read_state(states.write_state(saved, KEY), KEY) == saved
 
 
 @given(any_state, st.binary(min_size=1, max_size=32))
-def test_a_state_of_another_key_is_none(saved: m.Saved, key: bytes) -> None:
+def test_a_state_of_another_key_is_none(saved: Saved, key: bytes) -> None:
     assert key == KEY or states.read_state(states.write_state(saved, key), KEY) is None
 
 
 @given(any_state, st.data())
-def test_a_state_that_somebody_changed_is_none(saved: m.Saved, data: st.DataObject) -> None:
+def test_a_state_that_somebody_changed_is_none(saved: Saved, data: st.DataObject) -> None:
     written = bytearray(states.write_state(saved, KEY))
     at = data.draw(st.integers(0, len(written) - 1))
     written[at] ^= 1 << data.draw(st.integers(0, 6))
@@ -50,7 +50,7 @@ def test_a_state_that_somebody_changed_is_none(saved: m.Saved, data: st.DataObje
 
 
 def test_a_state_of_other_kernels_is_none(monkeypatch) -> None:
-    saved = m.Saved(BUILT_IN["papers"], 1, b"x", (), 0, 0.0, None)
+    saved = Saved(BUILT_IN["papers"], 1, b"x", (), 0, 0.0, None)
     monkeypatch.setattr(states, "KERNELS", "others")
     written = states.write_state(saved, KEY)
     monkeypatch.undo()
@@ -81,7 +81,7 @@ def test_any_json_is_read_without_a_fault(first, last, lines) -> None:
 def test_a_way_comes_back_to_the_millimetre(lines) -> None:
     segments = [np.stack([line[:-1], line[1:]], axis=1) for line in map(np.array, lines)]
     made = np.concatenate(segments) if segments else np.empty((0, 2, 3))
-    way = m.Way(3, 99, made.astype(np.float32))
+    way = Way(3, 99, made.astype(np.float32))
     again = states.read_way(states.write_way(way))
     assert again is not None
     assert (again.first, again.last) == (3, 99)
@@ -89,8 +89,8 @@ def test_a_way_comes_back_to_the_millimetre(lines) -> None:
 
 
 def test_ways_join_from_the_newest_start_on() -> None:
-    def way(first: int, last: int) -> m.Way:
-        return m.Way(first, last, np.full((1, 2, 3), first, np.float32))
+    def way(first: int, last: int) -> Way:
+        return Way(first, last, np.full((1, 2, 3), first, np.float32))
 
     joined = states.joined([way(0, 5), way(5, 9), way(0, 7), way(8, 9), way(7, 12)])
     assert joined is not None

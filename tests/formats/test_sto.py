@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from app.formats.sto import sto
-from app.motion import Role
+from app.motion.basics import Role
 
 
 def test_two_feet_share_one_clock_by_the_nearest_sample() -> None:

@@ -4,7 +4,8 @@ import pytest
 from app.formats.mounting import AS_GIVEN, Axes, parse_axes, rotation, write_axes
 from app.formats.reading import read
 from app.formats.swing import face_forward
-from app.motion import Floats, Role, Samples
+from app.motion.basics import Floats, Role
+from app.motion.samples import Samples
 
 FROM_ABOVE = ["x,y,z", "y,-x,z", "-x,-y,z", "-y,x,z"]
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from app.formats import table
 from app.formats.raw import NO_STAMP
 from app.formats.table import floats, nanoseconds, read_columns, read_head, shifted_floats, to_text, words
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def columns(data: bytes) -> tuple[np.ndarray, dict[str, int]]:

@@ -3,7 +3,7 @@ import math
 import pytest
 
 from app.formats.units import FIELD, FORCE, RATE, factor, split_unit
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 @pytest.mark.parametrize(

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
-from app import motion as m
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
+from app.motion.basics import Role
+from app.motion.samples import Sample
 from app.settings import Settings
 
 CLOCK_NS = 1_700_000_000_000_000_000
 
 
-def random_samples(count: int, seed: int = 1) -> list[m.Sample]:
+def random_samples(count: int, seed: int = 1) -> list[Sample]:
     """``count`` samples of two feet with every optional part now and then."""
     rng = np.random.default_rng(seed)
     made = []
@@ -20,7 +21,7 @@ def random_samples(count: int, seed: int = 1) -> list[m.Sample]:
         numbers = (rng.normal(size=13) * 30.0).tolist()
         force, rate, field, q = (tuple(numbers[a:b]) for a, b in ((0, 3), (3, 6), (6, 9), (9, 13)))
         made.append(
-            m.Sample(
+            Sample(
                 ("left", "right")[i % 2],
                 i // 2,
                 10_000_000 * (i // 2) - 30_000_000,
@@ -36,11 +37,11 @@ def random_samples(count: int, seed: int = 1) -> list[m.Sample]:
 
 
 def keeper(about: dict[str, object] | None = None) -> Keeper:
-    roles = {"left": m.Role.LEFT, "right": m.Role.RIGHT}
+    roles = {"left": Role.LEFT, "right": Role.RIGHT}
     return Keeper(about or {"version": "test"}, roles, CLOCK_NS)
 
 
-def write(samples: list[m.Sample], chunk: int = 20, settings: Settings | None = None) -> bytes:
+def write(samples: list[Sample], chunk: int = 20, settings: Settings | None = None) -> bytes:
     """A whole file of these samples, ``chunk`` a chunk."""
     made = keeper()
     data = made.begin(0)

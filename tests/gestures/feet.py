@@ -5,7 +5,8 @@ from __future__ import annotations
 from functools import cache
 
 from app.gestures.words import FootReading
-from app.motion import Role, Samples, Vector
+from app.motion.basics import Role, Vector
+from app.motion.samples import Samples
 from app.simulate.gestures import SimulatedGestures, make_gestures
 
 LEVEL: Vector = (0.0, 0.0, -9.80665)

@@ -10,7 +10,7 @@ import pytest
 from app.gestures.default import DefaultDecoder, words
 from app.gestures.merge import changes, decode, readings
 from app.gestures.words import GENTLE_MPS, Decision
-from app.motion import MotionId, Role
+from app.motion.basics import MotionId, Role
 from app.simulate.gestures import Bout, SimulatedGestures
 from tests.gestures.feet import feet_of, performed, still
 

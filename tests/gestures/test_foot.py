@@ -10,7 +10,7 @@ import pytest
 
 from app.gestures.foot import step_foot
 from app.gestures.state import BACK, FOOT, STEP, TOE_UP, TWIST, Record
-from app.motion import Vector
+from app.motion.basics import Vector
 
 DT_S = 0.01
 G = 9.80665

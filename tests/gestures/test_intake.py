@@ -8,7 +8,8 @@ import pytest
 
 from app.clocks import LiveClock
 from app.gestures.intake import Intake
-from app.motion import Role, Sample, role_of
+from app.motion.basics import Role, role_of
+from app.motion.samples import Sample
 
 
 def intake() -> Intake:

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 
 from app.gestures.merge import changes, readings
 from app.gestures.words import Decision, standing
-from app.motion import SAMPLE_WIDTH, MotionId, Role, Samples
+from app.motion.basics import MotionId, Role
+from app.motion.samples import SAMPLE_WIDTH, Samples
 
 stamps = st.lists(st.integers(0, 10**9), unique=True, max_size=30).map(sorted)
 

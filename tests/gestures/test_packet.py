@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from app.gestures.packet import decode, encode, packet_of
 from app.gestures.words import Decision, standing
-from app.motion import MotionId
+from app.motion.basics import MotionId
 
 
 @given(st.sampled_from(MotionId), st.floats(-30.0, 30.0))

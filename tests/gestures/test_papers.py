@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from app.gestures.papers import FEET, FootMachines, PapersDecoder, PapersSettings, overall
 from app.gestures.words import FootReading
-from app.motion import MotionId, Role
+from app.motion.basics import MotionId, Role
 from app.rotation import from_yaw
 from tests.gestures.feet import LEVEL
 

@@ -9,7 +9,7 @@ from app.gestures.default import DefaultDecoder, DefaultSettings
 from app.gestures.merge import readings
 from app.gestures.setup import STEPS, Fitted, SetUpGuide
 from app.gestures.words import FootReading
-from app.motion import Role
+from app.motion.basics import Role
 from app.simulate.gestures import make_gestures
 
 SCRIPT = "none:3.2,forward:5,turn_ccw:4,turn_cw:4,side_right:4,none:6"

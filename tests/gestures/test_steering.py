@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from app.gestures.steering import STOP, Comfort, Walker, slide, steer
 from app.gestures.words import Decision
-from app.motion import MotionId
+from app.motion.basics import MotionId
 from app.world import Town, make_town
 
 TOWN = make_town(1)

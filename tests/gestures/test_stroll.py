@@ -10,7 +10,7 @@ import pytest
 from app.gestures.steering import Walker, steer
 from app.gestures.stroll import Streets, Stroller
 from app.gestures.words import Decision
-from app.motion import MotionId
+from app.motion.basics import MotionId
 from app.world import make_town
 
 TOWN = make_town()

@@ -10,7 +10,8 @@ from hypothesis import strategies as st
 
 from app.home import biases, calibrations
 from app.home.biases import Remembered
-from app.motion import GyroBias, InputError
+from app.motion.basics import InputError
+from app.motion.samples import GyroBias
 
 FOUND = Remembered("3DM-GX1 <1234>", GyroBias((0.1 + 0.2, -0.004, 0.0), (3e-4, 1e-3, 5e-4)), "2026-11-22", "")
 

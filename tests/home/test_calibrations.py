@@ -8,7 +8,9 @@ import pytest
 
 from app.calibration.words import Calibration, Correction
 from app.home import calibrations
-from app.motion import InputError, Sample, SourceInfo
+from app.motion.basics import InputError
+from app.motion.samples import Sample
+from app.motion.source import SourceInfo
 
 KEY = "serial:/dev/ttyUSB0 left"
 

@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, example, given, settings
 from hypothesis import strategies as st
 
 from app.home import profiles
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.settings import BUILT_IN, LIMITS, Settings
 
 PAPERS = BUILT_IN["papers"]

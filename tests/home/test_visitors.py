@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from app.home import visitors
-from app.motion import InputError
+from app.motion.basics import InputError
 
 VALUES: dict[str, float | bool] = {"on_radps": 0.412, "off_radps": 0.206, "sure_rad": 0.05, "swapped": True}
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.outputs import forwarder
 from app.outputs.forwarder import Links, UdpSender, WsSender, sender_to
 from app.sources.spec import parse_spec

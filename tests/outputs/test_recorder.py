@@ -14,15 +14,16 @@ from pathlib import Path
 
 import pytest
 
-from app import motion as m
 from app.formats import kept
 from app.formats.journal import Start
+from app.motion.basics import InputError, Role
+from app.motion.source import SourceInfo
 from app.outputs import recorder as recorder_module
 from app.outputs.recorder import Recorder
 from app.settings import Settings
 from tests.formats.walks import random_samples
 
-INFO = m.SourceInfo("demo.csv", "plain CSV", {"left": m.Role.LEFT, "right": m.Role.RIGHT}, 400.0)
+INFO = SourceInfo("demo.csv", "plain CSV", {"left": Role.LEFT, "right": Role.RIGHT}, 400.0)
 
 
 def a_recorder(folder: Path, **rest) -> Recorder:
@@ -75,7 +76,7 @@ def test_a_name_cannot_leave_the_folder(tmp_path: Path, profile: str) -> None:
 
 def test_a_folder_that_cannot_be_made_is_one_line(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("")
-    with pytest.raises(m.InputError, match="--record") as error:
+    with pytest.raises(InputError, match="--record") as error:
         a_recorder(tmp_path / "file")
     assert "\n" not in str(error.value)
 

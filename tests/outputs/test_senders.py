@@ -11,7 +11,7 @@ from pythonosc.osc_message import OscMessage
 
 from app.formats import osc
 from app.gestures.packet import decode, encode
-from app.motion import InputError, MotionId
+from app.motion.basics import InputError, MotionId
 from app.outputs.senders import AXES_S, AxesSender, Outlet, PacketSender, address_of
 
 

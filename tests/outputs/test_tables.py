@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.outputs import tables
 from app.settings import Settings
 from app.shell import batch

@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from app.motion import Order
+from app.motion.commands import Order
 from app.scene.page import Scene
 
 

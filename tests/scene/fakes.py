@@ -7,24 +7,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.motion import (
-    Change,
-    Footprint,
-    FootView,
-    GaitPhase,
-    Graph,
-    Health,
-    Link,
-    Role,
-    Snapshot,
-    SourceInfo,
-    Status,
-    Sweep,
-    TrackView,
-    Trail,
-    TrailPiece,
-    Vector,
-)  # fmt: skip
+from app.motion.basics import GaitPhase, Role, Vector
+from app.motion.estimate import Sweep
+from app.motion.health import Health
+from app.motion.snapshot import Change, Footprint, FootView, Graph, Snapshot, TrackView, Trail, TrailPiece
+from app.motion.source import Link, SourceInfo
+from app.motion.status import Status
 from app.rotation import from_yaw_pitch_roll
 from app.settings import Settings
 

@@ -10,7 +10,9 @@ import msgspec
 import pytest
 
 from app.door.filter import admit
-from app.motion import GuiRule, InputError, Order
+from app.motion.basics import InputError
+from app.motion.commands import Order
+from app.motion.door import GuiRule
 from app.scene.page import Scene
 from app.session import Session
 from app.settings import Settings

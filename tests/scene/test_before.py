@@ -9,7 +9,7 @@ import pytest
 
 from app.calibration.guide import Guide
 from app.calibration.steps import FIELD_STEPS, STEPS
-from app.motion import CalibrationView, GuideView, Line, LineState, PreflightView
+from app.motion.status import CalibrationView, GuideView, Line, LineState, PreflightView
 from app.scene import pictures
 from app.scene.before import applied, guide, preflight
 

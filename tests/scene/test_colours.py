@@ -2,7 +2,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.motion import Role
+from app.motion.basics import Role
 from app.scene import colours
 
 

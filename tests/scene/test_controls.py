@@ -6,11 +6,10 @@ from dataclasses import replace
 
 import pytest
 
-from app.motion import (
+from app.motion.commands import (
     ApplyCandidate,
     DropCandidate,
     FindGains,
-    GuiRule,
     KeepAs,
     LoadProfile,
     Loop,
@@ -27,7 +26,8 @@ from app.motion import (
     Step,
     SwapAB,
     Undo,
-)  # fmt: skip
+)
+from app.motion.door import GuiRule
 from app.scene import controls, private
 from app.scene.page import Scene
 from app.scene.replaying import factor

@@ -5,7 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from app.motion import Role, Trust
+from app.motion.basics import Role
+from app.motion.estimate import Trust
 from app.scene import doubt
 from app.scene.page import Scene
 

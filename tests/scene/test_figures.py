@@ -5,7 +5,11 @@ from dataclasses import replace
 
 import pytest
 
-from app.motion import Change, Compass, GaitPhase, Link, Snapshot, Status, Trust
+from app.motion.basics import GaitPhase
+from app.motion.estimate import Compass, Trust
+from app.motion.snapshot import Change, Snapshot
+from app.motion.source import Link
+from app.motion.status import Status
 from app.scene import figures, words
 from app.settings import Settings
 from tests.scene import fakes

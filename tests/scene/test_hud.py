@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import pytest
 
-from app.motion import MotionId
+from app.motion.basics import MotionId
 from app.scene import hud, mover_panel
 from app.visit import Goal, Task, Visit
 from app.visiting import Visiting

@@ -13,7 +13,9 @@ import numpy as np
 import pytest
 from playwright.sync_api import Browser, Page
 
-from app.motion import ApplyCandidate, Order, SetCandidate, Snapshot, Status
+from app.motion.commands import ApplyCandidate, Order, SetCandidate
+from app.motion.snapshot import Snapshot
+from app.motion.status import Status
 from app.scene.page import Scene
 from tests.scene import fakes
 from tests.scene.browsers import until

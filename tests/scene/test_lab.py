@@ -6,7 +6,8 @@ from dataclasses import asdict, replace
 
 import pytest
 
-from app.motion import GuiRule, PendulumView
+from app.motion.door import GuiRule
+from app.motion.snapshot import PendulumView
 from app.rotation import from_yaw_pitch_roll
 from app.scene import figures, private, swinging
 from app.scene.page import Scene

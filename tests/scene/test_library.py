@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from app.motion import Order, Play, Rename, Share, ShelfFile
+from app.motion.commands import Order, Play, Rename, Share
+from app.motion.status import ShelfFile
 from app.scene.library import table
 from app.scene.page import Scene
 from tests.scene import fakes

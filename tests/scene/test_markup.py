@@ -12,7 +12,10 @@ from typing import Any
 import pytest
 from playwright.sync_api import Browser, Page
 
-from app.motion import Light, Recent, RecorderState, ShelfFile, TrailPiece, Trust
+from app.motion.estimate import Trust
+from app.motion.health import Light, Recent
+from app.motion.snapshot import TrailPiece
+from app.motion.status import RecorderState, ShelfFile
 from app.scene.page import Scene
 from app.settings import Settings
 from tests.scene import fakes

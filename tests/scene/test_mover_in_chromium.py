@@ -15,7 +15,8 @@ from playwright.sync_api import Browser, Page
 
 from app.door.access import Access
 from app.door.front import Door
-from app.motion import MotionId, Order
+from app.motion.basics import MotionId
+from app.motion.commands import Order
 from app.scene.mover_page import MoverScene
 from app.visit import Steer, Visit
 from app.visiting import Visiting

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from app.motion import Snapshot, Trail
+from app.motion.snapshot import Snapshot, Trail
 from app.scene import private
 from app.scene.page import Scene
 from tests.scene import fakes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.motion import RecorderState
+from app.motion.status import RecorderState
 from app.scene.recording import banner, line
 from tests.scene.fakes import status
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from app.motion import Reference
+from app.motion.status import Reference
 from app.scene import private
 from app.scene.page import Scene
 from app.scene.reference import told

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.scene.share import told
 from app.settings import Settings
 from app.shell.film import share

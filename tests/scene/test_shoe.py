@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 import trimesh
 
-from app.motion import Role
+from app.motion.basics import Role
 from app.scene import private, shoe
 from app.scene.colours import FOOT
 from app.scene.page import Scene

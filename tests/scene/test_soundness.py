@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.motion import Health, Light, Recent
+from app.motion.health import Health, Light, Recent
 from app.scene.soundness import lights, tables
 from tests.scene.fakes import snapshot, status
 

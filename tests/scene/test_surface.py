@@ -5,7 +5,7 @@ import io
 import numpy as np
 from PIL import Image
 
-from app.motion import Sweep
+from app.motion.estimate import Sweep
 from app.scene import surface
 from tests.scene import fakes
 

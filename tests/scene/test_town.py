@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.scene.town import parts, sky_file, town_file
 from app.world import Box, Town, make_town
 

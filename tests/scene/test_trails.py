@@ -3,7 +3,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from app.motion import Trail, TrailPiece
+from app.motion.snapshot import Trail, TrailPiece
 from app.scene import private, trails
 from app.scene.page import Scene
 from tests.scene import fakes

@@ -11,7 +11,7 @@ from playwright.sync_api import Browser
 
 from app.door.access import Access
 from app.door.front import Door
-from app.motion import Order
+from app.motion.commands import Order
 from app.scene.page import Scene
 from tests.scene import fakes
 from tests.scene.browsers import until

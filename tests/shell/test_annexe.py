@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from app.door.access import Access, Certificate
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.shell.annexe import Annexe, address_in, door_arguments, environment
 
 

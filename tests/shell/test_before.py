@@ -10,7 +10,11 @@ import pytest
 
 from app.calibration.words import Calibration, Correction
 from app.home import calibrations
-from app.motion import Calibrate, CheckFirst, InputError, Link, Role, Sample, SourceInfo, Status
+from app.motion.basics import InputError, Role
+from app.motion.commands import Calibrate, CheckFirst
+from app.motion.samples import Sample
+from app.motion.source import Link, SourceInfo
+from app.motion.status import Status
 from app.session import Session
 from app.settings import Settings
 from app.shell.before import Before

@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from app.commands.calibrate import Teller, bar
-from app.motion import GuideView, InputError
+from app.motion.basics import InputError
+from app.motion.status import GuideView
 from app.shell.calibrate import calibrate
 from app.simulate.calibration import make_calibration
 from tests.refusals import refused

@@ -15,7 +15,9 @@ import pytest
 
 from app.clocks import LiveClock
 from app.health import Monitor
-from app.motion import GaitPhase, InputError, Sample, SourceInfo
+from app.motion.basics import GaitPhase, InputError
+from app.motion.samples import Sample
+from app.motion.source import SourceInfo
 from app.shell import measuring
 from app.shell.doctor import Finding, Machine, examine
 from app.shell.measuring import measured

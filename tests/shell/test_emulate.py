@@ -7,7 +7,7 @@ from itertools import pairwise
 import pytest
 
 from app.formats.wire.catalogue import KINDS
-from app.motion import GAP_NS
+from app.motion.samples import GAP_NS
 from tests.emulated import WALK, Served, expected, serve, values
 
 

@@ -7,7 +7,10 @@ from dataclasses import asdict, replace
 import numpy as np
 import pytest
 
-from app.motion import InputError, Link, Snapshot, Status
+from app.motion.basics import InputError
+from app.motion.snapshot import Snapshot
+from app.motion.source import Link
+from app.motion.status import Status
 from app.session import Session
 from app.settings import LIMITS, Settings
 from app.shell.hand_in import Seen, made, plots_of

@@ -7,7 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from app import motion as m
+from app.motion.basics import InputError
+from app.motion.commands import Play, Rename, Seek, SetDeclination, Share
+from app.motion.source import Link
 from app.settings import Settings
 from app.shell.librarian import Librarian
 from app.sources.glanced import Glanced
@@ -19,7 +21,7 @@ GPX = '<gpx><trk><trkseg><trkpt lat="48" lon="11"/><trkpt lat="48.001" lon="11"/
 
 
 def asked(
-    folder: Path, *commands: m.Play | m.Rename | m.Share | m.SetDeclination
+    folder: Path, *commands: Play | Rename | Share | SetDeclination
 ) -> tuple[Librarian, list[str], list[Source]]:
     """Each command after the one before has come to its end."""
     said: list[str] = []
@@ -45,7 +47,7 @@ def folder(tmp_path: Path) -> Path:
 
 
 def test_a_recording_is_opened_with_the_settings_it_holds(folder: Path) -> None:
-    _, said, (source,) = asked(folder, m.Play("walk.mcap"))
+    _, said, (source,) = asked(folder, Play("walk.mcap"))
     assert source.info.name == "walk.mcap"
     assert source.settings == Settings()
     assert said[-1] == ""
@@ -56,41 +58,41 @@ def test_a_large_recording_shows_its_trails_until_it_is_read(
 ) -> None:
     monkeypatch.setattr("app.sources.glanced.LEAST_BYTES", 0)
     (folder / "hour.mcap").write_bytes(WHOLE)
-    _, _, (soon, source) = asked(folder, m.Play("hour.mcap"))
+    _, _, (soon, source) = asked(folder, Play("hour.mcap"))
     assert isinstance(soon, Glanced)
     assert soon.info.outline is not None
-    assert soon.link is m.Link.WAITING
-    with pytest.raises(m.InputError, match=r"seek: hour\.mcap is still being read"):
-        soon.control(m.Seek(1.0))
+    assert soon.link is Link.WAITING
+    with pytest.raises(InputError, match=r"seek: hour\.mcap is still being read"):
+        soon.control(Seek(1.0))
     assert source.info.outline is None
     assert source.info.name == "hour.mcap"
 
 
 def test_a_gps_track_leaves_the_walk_where_it_is(folder: Path) -> None:
-    librarian, _, opened = asked(folder, m.Play("way.gpx"))
+    librarian, _, opened = asked(folder, Play("way.gpx"))
     assert opened == []
     assert librarian.reference is not None
     assert librarian.reference.length_m == pytest.approx(111.2, abs=0.1)
 
 
 def test_a_declination_turns_the_track_shown_and_those_to_come(folder: Path) -> None:
-    librarian, _, _ = asked(folder, m.Play("way.gpx"), m.SetDeclination(90.0))
+    librarian, _, _ = asked(folder, Play("way.gpx"), SetDeclination(90.0))
     assert librarian.reference is not None
     assert librarian.reference.segments[-1, 1].tolist() == pytest.approx([0.0, -111.2], abs=0.1)
-    librarian, _, _ = asked(folder, m.SetDeclination(90.0), m.Play("way.gpx"))
+    librarian, _, _ = asked(folder, SetDeclination(90.0), Play("way.gpx"))
     assert librarian.reference is not None
     assert librarian.reference.segments[-1, 1].tolist() == pytest.approx([0.0, -111.2], abs=0.1)
 
 
 @pytest.mark.parametrize("name", ["none.mcap", "broken.csv", "../walk.mcap"])
 def test_trouble_is_one_line(folder: Path, name: str) -> None:
-    _, said, opened = asked(folder, m.Play(name))
+    _, said, opened = asked(folder, Play(name))
     assert opened == []
     assert said[-1]
     assert "\n" not in said[-1]
 
 
 def test_a_file_is_renamed_and_listed_so(folder: Path) -> None:
-    librarian, said, _ = asked(folder, m.Rename("walk.mcap", "stairs"))
+    librarian, said, _ = asked(folder, Rename("walk.mcap", "stairs"))
     assert "stairs.mcap" in {file.name for file in librarian.files}
     assert said == ["walk.mcap is now stairs.mcap"]

@@ -19,7 +19,7 @@ from pythonosc.osc_message import OscMessage
 from app.commands.mover import wall_of
 from app.door.access import Access
 from app.gestures.packet import decode
-from app.motion import InputError, MotionId
+from app.motion.basics import InputError, MotionId
 from app.shell.mover import Options, addresses
 from tests.refusals import refused
 from tests.scene.pages import PATIENCE_MS

@@ -9,7 +9,10 @@ import numpy as np
 import pytest
 
 from app.home import biases, calibrations
-from app.motion import Journal, KnowBias, Order, Recording, Role, SourceInfo
+from app.motion.basics import Role
+from app.motion.commands import KnowBias, Order
+from app.motion.recording import Journal, Recording
+from app.motion.source import SourceInfo
 from app.session import Session
 from app.settings import Settings
 from app.shell import batch

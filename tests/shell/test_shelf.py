@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.shell.shelf import Shelf, track
 from tests.formats.walks import random_samples, write
 

@@ -7,7 +7,7 @@ import pytest
 from scipy.integrate import cumulative_trapezoid, quad
 from scipy.special import erf
 
-from app.motion import Floats
+from app.motion.basics import Floats
 from app.simulate.gait import (
     ROUNDING,
     Gait,

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.motion import InputError, MotionId
+from app.motion.basics import InputError, MotionId
 from app.simulate.gestures import FEET, SimulatedGestures, make_gestures
 from app.simulate.gestures_options import GESTURES
 from app.sources.opening import open_recording

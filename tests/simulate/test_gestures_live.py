@@ -7,7 +7,8 @@ import pytest
 
 from app.gestures.default import DefaultDecoder
 from app.gestures.words import Decision, FootReading
-from app.motion import MotionId, Role, Sample
+from app.motion.basics import MotionId, Role
+from app.motion.samples import Sample
 from app.simulate.gestures_live import LiveFeet
 from app.simulate.gestures_options import GestureOptions
 

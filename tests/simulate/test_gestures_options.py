@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.simulate.gestures_options import GESTURES, IDLE, GestureOptions, bars_of, parse, spec_of
 
 a_bar = st.builds("{}:{}".format, st.sampled_from([*GESTURES, *IDLE]), st.integers(1, 90))

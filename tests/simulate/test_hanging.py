@@ -7,7 +7,9 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from app.estimator.tracker import track
-from app.motion import ATTITUDE, Column, Floats, InputError
+from app.motion.basics import Floats, InputError
+from app.motion.estimate import ATTITUDE
+from app.motion.samples import Column
 from app.rotation import pitch_of
 from app.settings import Settings
 from app.simulate.hanging import HELD_S, SENSOR, make_pendulum

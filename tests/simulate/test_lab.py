@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.motion import Sample
+from app.motion.samples import Sample
 from app.session import Session
 from app.simulate.lab import LESSONS, LIMITS, PERFECT, Lab, LabErrors, Lesson
 from app.simulate.walk import make_walk

@@ -9,7 +9,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.simulate.options import MODELS, PATHS, WalkOptions, parse, spec_of
 
 numbers = st.floats(-3.0, 3.0).map(lambda x: float(f"{x:.12g}"))

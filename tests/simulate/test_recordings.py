@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from app.formats.reading import read
-from app.motion import Recording
+from app.motion.recording import Recording
 from app.simulate.options import WalkOptions, parse, spec_of
 from app.simulate.walk import SimulatedWalk, simulate
 

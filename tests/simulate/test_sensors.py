@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.motion import Column, Floats, Samples
+from app.motion.basics import Floats
+from app.motion.samples import Column, Samples
 from app.simulate.foot import Motion
 from app.simulate.options import WalkOptions
 from app.simulate.sensors import FIELD_N_UT, Iron, field_of, ideal_readings, saturation_bits

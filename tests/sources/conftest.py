@@ -7,7 +7,9 @@ import asyncio
 import numpy as np
 import pytest
 
-from app.motion import Recording, Samples, role_of
+from app.motion.basics import role_of
+from app.motion.recording import Recording
+from app.motion.samples import Samples
 
 
 def make_recording(*stamps_ms: tuple[str, list[int]], start_ns: int = 0) -> Recording:

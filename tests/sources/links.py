@@ -5,7 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import Callable
 
-from app.motion import Sample
+from app.motion.samples import Sample
 from app.sources.source import Source
 
 STEP_NS = 2_500_000

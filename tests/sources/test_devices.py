@@ -9,7 +9,9 @@ from collections.abc import AsyncIterator
 import pytest
 
 from app.__main__ import main
-from app.motion import Link, Role, Sample
+from app.motion.basics import Role
+from app.motion.samples import Sample
+from app.motion.source import Link
 from app.shell.emulate import Emulator, Wanted
 from app.sources.devices import look
 from app.sources.opening import open_recording, open_source

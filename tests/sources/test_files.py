@@ -4,7 +4,7 @@ from pathlib import Path
 import pytest
 
 from app.formats.plain import HEADER
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources import files
 from app.sources.files import load
 

@@ -8,7 +8,8 @@ import time
 
 import pytest
 
-from app.motion import Link, Sample
+from app.motion.samples import Sample
+from app.motion.source import Link
 from app.sources import inbox
 from app.sources.inbox import Inbox
 

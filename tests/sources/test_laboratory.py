@@ -7,7 +7,10 @@ from dataclasses import asdict
 
 import pytest
 
-from app.motion import InputError, Pause, Sample, Seek, SetErrors, Stretch
+from app.motion.basics import InputError
+from app.motion.commands import Pause, Seek, SetErrors
+from app.motion.recording import Stretch
+from app.motion.samples import Sample
 from app.simulate.lab import LESSONS, PERFECT, lesson, pendulum
 from app.sources.laboratory import Laboratory
 from app.sources.opening import open_source

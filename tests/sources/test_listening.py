@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.listening import bind, options_of, place_of, token_for
 from app.sources.spec import parse_spec
 

@@ -9,7 +9,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.outputs.lsl import LslSender
 from app.sources import lsl
 from app.sources.lsl import LslSource

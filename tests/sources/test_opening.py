@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from app.formats.plain import encode
-from app.motion import InputError, Sample
+from app.motion.basics import InputError
+from app.motion.samples import Sample
 from app.simulate.walk import make_walk
 from app.sources.opening import open_source
 from app.sources.replay import Replay

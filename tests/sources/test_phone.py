@@ -10,7 +10,9 @@ from hypothesis import strategies as st
 
 from app.formats.wire.message import encode_binary, encode_json
 from app.formats.wire.reply import Ack, Refused, decode_reply
-from app.motion import InputError, Link, Sample
+from app.motion.basics import InputError
+from app.motion.samples import Sample
+from app.motion.source import Link
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.spec import parse_spec

@@ -4,7 +4,9 @@ from itertools import pairwise
 
 import pytest
 
-from app.motion import InputError, Loop, Pause, RestartHere, Sample, Seek, Speed, Step
+from app.motion.basics import InputError
+from app.motion.commands import Loop, Pause, RestartHere, Seek, Speed, Step
+from app.motion.samples import Sample
 from app.sources.replay import HostClock, Replay
 from app.sources.source import Item
 

@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.serial_spec import open_serial, port_specs
 from app.sources.spec import Spec, parse_spec
 from app.sources.starting import Wish

@@ -2,7 +2,10 @@ import asyncio
 
 import pytest
 
-from app.motion import InputError, Link, Loop, Pause, Sample, Seek, Speed, Step
+from app.motion.basics import InputError
+from app.motion.commands import Loop, Pause, Seek, Speed, Step
+from app.motion.samples import Sample
+from app.motion.source import Link
 from app.simulate.walk import make_walk
 from app.sources.replay import Replay
 from app.sources.source import Live, Source

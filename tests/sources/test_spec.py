@@ -2,7 +2,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.motion import InputError
+from app.motion.basics import InputError
 from app.sources.spec import KINDS, Spec, parse_spec
 
 

@@ -14,7 +14,7 @@ from itertools import pairwise
 
 import pytest
 
-from app.motion import Sample
+from app.motion.samples import Sample
 from app.sources.opening import open_source
 
 WALK = "sim:walk?path=straight&rate_hz=100&duration_s={seconds}"

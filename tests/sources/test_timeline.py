@@ -4,7 +4,9 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.motion import Recording, Role, Samples
+from app.motion.basics import Role
+from app.motion.recording import Recording
+from app.motion.samples import Samples
 from app.sources.timeline import Timeline
 
 STEPS = st.lists(st.integers(1, 50), min_size=0, max_size=20)

@@ -9,7 +9,8 @@ import pytest
 
 from app.formats.wire import ngimu
 from app.formats.wire.message import encode_binary, encode_json
-from app.motion import InputError, Link
+from app.motion.basics import InputError
+from app.motion.source import Link
 from app.sources.spec import parse_spec
 from app.sources.udp import UdpSource
 from tests.sources.links import Reader, walk

@@ -12,7 +12,7 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from app.formats.wire.message import encode_binary, encode_json
 from app.formats.wire.reply import Ack, Refused, decode_reply
-from app.motion import Link
+from app.motion.source import Link
 from app.sources.spec import parse_spec
 from app.sources.ws import WsSource
 from tests.sources.links import Reader, walk

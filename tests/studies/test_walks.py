@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from app.motion import ROW_WIDTH
+from app.motion.estimate import ROW_WIDTH
 from app.studies import walks
 from app.studies.catalogue import STUDIES
 from app.studies.late_start import SHORT, shortfall_m

@@ -26,7 +26,7 @@ from app.formats.wire import (
 from app.formats.wire.making import Z_UP
 from app.formats.wire.stream import Counters
 from app.formats.wire.talk import Script
-from app.motion import Sample
+from app.motion.samples import Sample
 
 
 class Decoder(Protocol):

@@ -9,7 +9,7 @@ from statistics import median
 
 from app.formats.units import G_MPS2
 from app.formats.wire.columns import find_columns
-from app.motion import Quaternion, Vector
+from app.motion.basics import Quaternion, Vector
 
 _CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d*)?)")
 _JSON = json.JSONDecoder(parse_int=str, parse_float=str)

@@ -18,7 +18,7 @@ from app.formats.wire.identify import Identifier
 from app.formats.wire.intake import Intake
 from app.formats.wire.message import MAGIC
 from app.formats.wire.stream import Counters
-from app.motion import Sample
+from app.motion.samples import Sample
 
 MOST_SENDERS = 64
 _TRIES = 64  # datagrams by which a sender must be known

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from random import Random
 
-from app.motion import InputError
+from app.motion.basics import InputError
 
 #: What ``--fault`` takes, with the sentence of its help.
 FAULTS = {

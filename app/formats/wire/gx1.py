@@ -17,7 +17,8 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import Maker, Taker, quantised, scaled
 from app.formats.wire.stream import NO_PACKET, Frames, find_first
 from app.formats.wire.ticks import DeviceClock, TickLength
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 from app.rotation import conjugate, from_yaw_pitch_roll, pitch_of, roll_of, yaw_of
 
 FACTORY_TICK_NS = 6_553_600

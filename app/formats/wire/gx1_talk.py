@@ -19,7 +19,8 @@ from app.formats.wire.gx1 import (
 )
 from app.formats.wire.pace import Pace
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 from app.rotation import conjugate, rotate
 
 AUTO_BAUDS = (38400, 115200, 19200)

@@ -17,7 +17,7 @@ from app.formats.wire.making import Maker
 from app.formats.wire.message import Malformed, Message, decode
 from app.formats.wire.reply import Ack
 from app.formats.wire.stream import Counters
-from app.motion import GAP_NS, Sample
+from app.motion.samples import GAP_NS, Sample
 
 MOST_SENSORS = 64
 _KEPT_SESSIONS = 16

@@ -30,7 +30,8 @@ from app.formats.wire.columns import UNITS, Columns, find_columns, is_unit, spel
 from app.formats.wire.making import NED, Z_UP, Maker, Taker, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
-from app.motion import InputError, Quaternion, Sample, Vector
+from app.motion.basics import InputError, Quaternion, Vector
+from app.motion.samples import Sample
 
 FASTEST_HZ = 1000.0
 BAUDS = (115200, 9600, 921600, 460800, 230400, 57600, 38400)

@@ -13,7 +13,8 @@ from app.formats.mounting import AS_GIVEN, Axes
 from app.formats.saturation import Range
 from app.formats.wire.columns import UNITS, find_columns, spelt
 from app.formats.wire.making import Z_UP, Maker, scaled
-from app.motion import Sample, Vector
+from app.motion.basics import Vector
+from app.motion.samples import Sample
 
 TYPE = "IMU"
 #: What our own streams say of their axes, so that they are not turned a second time.

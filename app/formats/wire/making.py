@@ -12,7 +12,8 @@ import numpy as np
 from app.formats.mounting import Axes, rotation
 from app.formats.saturation import Range
 from app.formats.units import G_MPS2
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 from app.rotation import conjugate, multiply
 
 Z_UP: Axes = ((0, 1), (1, -1), (2, -1))  # a board with z up and x ahead

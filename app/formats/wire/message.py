@@ -12,7 +12,8 @@ import struct
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 
 VERSION = 1
 MAGIC = b"STRD"

@@ -17,7 +17,8 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import Maker, Taker, in_g, scaled
 from app.formats.wire.stream import UNKNOWN_YET, Frames, find_header
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 
 FASTEST_HZ = 1000.0
 SYNC = b"\x75\x65"

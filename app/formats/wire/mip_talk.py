@@ -23,7 +23,7 @@ from app.formats.wire.mip import (
 from app.formats.wire.pace import Pace
 from app.formats.wire.stream import Frames
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
-from app.motion import Sample
+from app.motion.samples import Sample
 
 BAUDS = (115200, 460800, 921600, 230400, 38400)
 BASE, THREE_DM = 0x01, 0x0C

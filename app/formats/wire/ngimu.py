@@ -14,7 +14,8 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import NWU, RAD_PER_DEG, Z_UP, Maker, Taker, in_g, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
-from app.motion import GAP_NS, Quaternion, Sample
+from app.motion.basics import Quaternion
+from app.motion.samples import GAP_NS, Sample
 
 FASTEST_HZ = 400.0
 SENSORS, QUATERNION = b"/sensors", b"/quaternion"

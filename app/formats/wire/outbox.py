@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from app.formats.wire.message import encode_binary
 from app.formats.wire.reply import Ack
-from app.motion import Sample
+from app.motion.samples import Sample
 
 #: Samples in one message: what waits after a cut goes in few messages, a live one goes at once.
 MOST_IN_ONE = 100

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from bisect import bisect_left, insort
 
-from app.motion import GAP_NS, Vector
+from app.motion.basics import Vector
+from app.motion.samples import GAP_NS
 
 _MOST = 20_000  # waiting for another sensor's
 

@@ -20,7 +20,8 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import scaled
 from app.formats.wire.message import MOST_NS, Malformed, Message
 from app.formats.wire.readings import Readings
-from app.motion import Sample, Vector
+from app.motion.basics import Vector
+from app.motion.samples import Sample
 
 #: On top of the shoe, screen up, top edge to the toe.
 ON_TOP: Axes = parse_axes("y,x,-z")

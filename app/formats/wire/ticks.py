@@ -5,7 +5,7 @@ from __future__ import annotations
 from itertools import combinations
 from statistics import median
 
-from app.motion import GAP_NS
+from app.motion.samples import GAP_NS
 
 _SLACK_NS = 1_000_000_000  # a device step may exceed the host's by this before it is suspect
 _IN_A_ROW = 8  # stamps a little in the past: late datagrams, unless so many follow each other

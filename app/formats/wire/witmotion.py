@@ -20,7 +20,8 @@ from app.formats.wire.pace import Pace
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_header
 from app.formats.wire.talk import Ask, Script
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 
 FASTEST_HZ = 200.0
 BAUDS = (115200, 9600, 921600, 460800, 38400)

@@ -18,7 +18,8 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import NWU, RAD_PER_DEG, Z_UP, Maker, Taker, in_g, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import DeviceClock
-from app.motion import Quaternion, Sample
+from app.motion.basics import Quaternion
+from app.motion.samples import Sample
 
 FASTEST_HZ = 400.0
 TICK_NS = 1000

@@ -10,7 +10,7 @@ from app.formats.wire.making import Z_UP
 from app.formats.wire.pace import Pace
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
 from app.formats.wire.ximu3 import Ximu3Encoder
-from app.motion import Sample
+from app.motion.samples import Sample
 
 BAUDS = (115200, 921600)
 BASE_HZ = 400

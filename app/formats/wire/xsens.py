@@ -15,7 +15,8 @@ from app.formats.saturation import RANGES, Range
 from app.formats.wire.making import ENU, NED, NWU, Z_UP, Maker, Taker
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_header
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 from app.rotation import conjugate, multiply
 
 FASTEST_HZ = 400.0

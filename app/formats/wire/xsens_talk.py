@@ -23,7 +23,7 @@ from app.formats.wire.xsens import (
     holds,
     message,
 )
-from app.motion import Sample
+from app.motion.samples import Sample
 
 BAUDS = (115200, 921600, 460800, 230400)
 GO_TO_CONFIG, GO_TO_MEASUREMENT, RESET, WAKE_UP, WAKE_UP_ACK = 0x30, 0x10, 0x40, 0x3E, 0x3F

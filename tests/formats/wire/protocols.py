@@ -16,7 +16,8 @@ from app.formats.wire import gx1, lines, mip, ngimu, witmotion, ximu3, xsens
 from app.formats.wire.catalogue import Decoder, Model
 from app.formats.wire.making import Z_UP
 from app.formats.wire.talk import Script, Talk
-from app.motion import Quaternion, Sample, Vector
+from app.motion.basics import Quaternion, Vector
+from app.motion.samples import Sample
 
 DEG = math.pi / 180
 FLOAT32 = 2.0**-23  # relative

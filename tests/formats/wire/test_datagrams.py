@@ -12,7 +12,7 @@ from app.formats.options import Options
 from app.formats.wire import datagrams, lines, ngimu, ximu3
 from app.formats.wire.datagrams import Datagrams
 from app.formats.wire.message import encode_binary, encode_json
-from app.motion import Sample
+from app.motion.samples import Sample
 
 STEP_NS = 10_000_000
 

@@ -3,7 +3,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats.wire.faults import Faults, Line, Outage, parse_faults
-from app.motion import InputError
+from app.motion.basics import InputError
 
 
 def test_what_is_typed() -> None:

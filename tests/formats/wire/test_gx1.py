@@ -16,7 +16,7 @@ from app.formats.wire.gx1 import (
     Gx1Setup,
     framed,
 )
-from app.motion import Sample
+from app.motion.samples import Sample
 from tests.formats.wire.protocols import FLOAT32, GX1_SETUP, at_rest
 
 RATE = (0.5, -1.0, 2.0)

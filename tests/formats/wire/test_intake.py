@@ -14,7 +14,7 @@ from app.formats.wire import intake
 from app.formats.wire.intake import Intake
 from app.formats.wire.message import Malformed, encode_binary, encode_json
 from app.formats.wire.reply import Ack
-from app.motion import GAP_NS, Sample
+from app.motion.samples import GAP_NS, Sample
 
 MS = 1_000_000
 

@@ -7,7 +7,8 @@ import pytest
 
 from app.formats.units import G_MPS2
 from app.formats.wire.lines import LinesDecoder
-from app.motion import InputError, Sample
+from app.motion.basics import InputError
+from app.motion.samples import Sample
 
 HEADER = b"t_ms,ax_g,ay_g,az_g,gx_dps,gy_dps,gz_dps,mx_ut,my_ut,mz_ut\n"
 ROW = "{t},0,0,1,0,0,90,20,0,-40\n"

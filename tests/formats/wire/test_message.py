@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from app.formats.wire import message as msg
 from app.formats.wire.message import Malformed, Message, decode, encode_binary, encode_json
-from app.motion import Sample
+from app.motion.samples import Sample
 
 numbers = st.floats(-1e6, 1e6, allow_nan=False)
 vectors = st.tuples(numbers, numbers, numbers)

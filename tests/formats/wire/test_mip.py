@@ -18,7 +18,7 @@ from app.formats.wire.mip import (
     fletcher,
     packet,
 )
-from app.motion import Sample
+from app.motion.samples import Sample
 
 COMMANDS = (
     "7565 01 02 02 01 E0C6",

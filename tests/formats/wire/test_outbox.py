@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from app.formats.wire.intake import Intake
 from app.formats.wire.outbox import Outbox, Parcel
 from app.formats.wire.reply import Ack
-from app.motion import Sample
+from app.motion.samples import Sample
 
 
 def sample(i: int, sensor: str) -> Sample:

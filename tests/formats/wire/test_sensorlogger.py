@@ -17,7 +17,7 @@ from app.formats.mounting import parse_axes
 from app.formats.units import G_MPS2
 from app.formats.wire.message import Malformed, Message
 from app.formats.wire.sensorlogger import ON_TOP, Phone, Push, parse
-from app.motion import Sample
+from app.motion.samples import Sample
 
 START = 1_700_000_000_000_000_000
 STEP = 10_000_000

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats.wire.ticks import ArrivalClock, DeviceClock, TickLength
-from app.motion import GAP_NS
+from app.motion.samples import GAP_NS
 
 MS = 1_000_000
 

@@ -21,7 +21,7 @@ from app.formats.wire.witmotion import (
     holds,
     start_up,
 )
-from app.motion import Sample
+from app.motion.samples import Sample
 from tests.formats.wire.protocols import at_rest, converse, result
 
 ONE_G = bytes.fromhex("55 51 0000 0000 0008 C409 7B")

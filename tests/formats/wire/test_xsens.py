@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from app.formats.wire.xsens import MTDATA2, QUATERNION, XsensDecoder, XsensEncoder, data_of, holds, message
-from app.motion import Sample
+from app.motion.samples import Sample
 from tests.formats.wire.protocols import at_rest
 
 PRINTED = (
