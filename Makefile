@@ -3,6 +3,9 @@
 # make demo     recordings/ and assets/ anew   make lock    requirements.txt anew
 BIN := .venv/bin
 
+# Tests run three at a time: many only wait. make test WORKERS=0 runs them one by one
+WORKERS := 3
+
 # make soak PARTS=network   only the parts whose titles have that word
 .PHONY: run mover setup test chromium bench soak demo lock
 
@@ -22,7 +25,7 @@ test: chromium
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/mypy app tests tools $(wildcard benchmarks)
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 bench: setup
 	@$(BIN)/python benchmarks/bench.py
