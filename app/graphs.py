@@ -8,7 +8,8 @@ import numpy as np
 
 from app.motion.estimate import ROW_WIDTH, VELOCITY, RowColumn
 from app.motion.snapshot import Graph
-from app.tracks import FootTrack, SensorStore
+from app.stores import SensorStore
+from app.tracks import FootTrack
 
 #: Seconds that the graphs show, and about how many points.
 GRAPH_S = 10.0

@@ -35,7 +35,7 @@ class TruePlace(NamedTuple):
 
 
 class Times(Protocol):
-    """When a sensor's samples were taken: ``tracks.SensorStore``."""
+    """When a sensor's samples were taken: ``stores.SensorStore``."""
 
     samples: Blocks
 

@@ -125,9 +125,9 @@ async def seeks(source: Replay) -> tuple[list[float], list[float]]:
         await until(t_s)
         session.snapshot()
         took.append(time.perf_counter() - began)
-        job = session.filling
+        job = session.applying.filling
         if job is not None:
             began = time.perf_counter()
-            session.filled(job, job.run())
+            session.applying.filled(job, job.run())
             filled.append(time.perf_counter() - began)
     return took, filled

@@ -25,8 +25,8 @@ def fed(samples: list[Sample], settings: Settings = HINDSIGHT) -> Session:
 def halt(session: Session) -> None:
     """A halt, and what the shell does then."""
     session.apply(Order(LookBack(), "hindsight", 0))
-    while (job := session.wanted) is not None:
-        session.adopt(job, job.run())
+    while (job := session.applying.wanted) is not None:
+        session.applying.adopt(job, job.run())
 
 
 def rows(session: Session) -> Floats:
@@ -72,17 +72,17 @@ def test_only_hindsight_looks_back_and_only_once() -> None:
     session = fed(WALK[:300])
     halt(session)
     session.apply(Order(LookBack(), "hindsight", 0))
-    assert session.wanted is None
+    assert session.applying.wanted is None
 
 
 def test_a_ghost_stays_through_it() -> None:
     session = fed(WALK[:400])
     session.apply(Order(SetCandidate((("gait_factor", 40.0),)), "me", 0))
     session.apply(Order(LookBack(), "hindsight", 0))
-    assert session.candidate_settings.gait_factor == 40.0
-    while (job := session.wanted) is not None:
-        session.adopt(job, job.run())
-    assert session.candidate is not None
-    assert session.candidate.settings.gait_factor == 40.0
+    assert session.applying.settings.gait_factor == 40.0
+    while (job := session.applying.wanted) is not None:
+        session.applying.adopt(job, job.run())
+    assert session.applying.candidate is not None
+    assert session.applying.candidate.settings.gait_factor == 40.0
     assert session.main.settings == HINDSIGHT
     assert session.main.smoothed_s is not None

@@ -60,9 +60,9 @@ def test_a_walk_that_is_turned_takes_it_along(walk: SimulatedWalk) -> None:
     session = taken(Session(Settings()), samples(walk)[:900])
     before = session.snapshot().own["foot"]
     session.apply(Order(ResetHeading(), "somebody", 0))
-    job = session.wanted
+    job = session.applying.wanted
     assert job is not None
-    session.adopt(job, job.run())
+    session.applying.adopt(job, job.run())
     after = session.snapshot().own["foot"]
     assert math.hypot(*after.position_n[:2]) == pytest.approx(math.hypot(*before.position_n[:2]))
     assert after.heading_rad == pytest.approx(before.heading_rad, abs=1e-6)

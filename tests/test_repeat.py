@@ -66,13 +66,13 @@ class Work:
         self.session, self.delay, self.waited = session, delay, 0
 
     def do(self, now: bool = False) -> None:
-        while self.session.wanted is not None:
+        while self.session.applying.wanted is not None:
             self.waited += 1
             if not now and self.waited < self.delay:
                 return
             self.waited = 0
-            job = self.session.wanted
-            self.session.adopt(job, job.run())
+            job = self.session.applying.wanted
+            self.session.applying.adopt(job, job.run())
 
 
 def apply(session: Session, given: Order) -> None:
@@ -153,11 +153,11 @@ def test_a_replay_with_its_changes_repeats_the_walk_to_the_bit(live, delay: int,
     path, session = live
     again = asyncio.run(replayed(f"replay:{path}?speed=0", Settings(), delay, seek_back))
     assert_same(session.main, again.main)
-    assert session.candidate is not None
-    assert again.candidate is not None
-    assert_same(session.candidate, again.candidate)
+    assert session.applying.candidate is not None
+    assert again.applying.candidate is not None
+    assert_same(session.applying.candidate, again.applying.candidate)
     if delay == 1:  # (the page's list leaves out an apply that the next one overtook)
-        assert [c[2:] for c in again.changes] == [c[2:] for c in session.changes]
+        assert [c[2:] for c in again.applying.changes] == [c[2:] for c in session.applying.changes]
 
 
 @pytest.mark.parametrize("delay", [1, 3, 1000])
@@ -169,9 +169,9 @@ def test_a_walk_that_was_sought_through_is_the_same_walk_to_the_bit(
     monkeypatch.setattr("app.sources.replay.WATCHED_NS", watched_s * 10**9)
     again = asyncio.run(replayed(f"replay:{path}?speed=0", Settings(), delay, stretches=True))
     assert_same(session.main, again.main)
-    assert session.candidate is not None
-    assert again.candidate is not None
-    assert_same(session.candidate, again.candidate)
+    assert session.applying.candidate is not None
+    assert again.applying.candidate is not None
+    assert_same(session.applying.candidate, again.applying.candidate)
 
 
 def test_a_replay_without_its_changes_has_the_settings_told(live) -> None:

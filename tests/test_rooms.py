@@ -12,6 +12,10 @@ import pytest
 APP = Path(__file__).parent.parent / "app"
 HEART = {
     "session",
+    "applying",
+    "beside",
+    "memory",
+    "stores",
     "tracks",
     "trail",
     "saving",
@@ -49,6 +53,7 @@ CLOCKS_AND_FILES |= {"shutil", "socket", "ssl", "subprocess", "tempfile", "threa
 ONLY_IN = {"viser": "scene", "numba": "compiled", "serial": "sources", "zstandard": "compressed"}
 #: Edges to tools that change how fast or how large, not what: everyone may use them.
 OPEN = {"compiled", "compressed"}
+CORE = {"session", "applying", "memory", "beside", "stores", "tracks", "estimator", "gestures"}
 STRANGERS = {frozenset({"estimator", "gestures"}), frozenset({"estimator", "simulate"})}
 
 
@@ -80,7 +85,7 @@ def faults(room: str, source: str, file: str = "") -> list[str]:
             "heart to the outside": room in HEART and refused_by_the_heart(name),
             "heart to an edge": room in HEART and other in EDGES - OPEN,
             "edge to edge": room in EDGES and other in EDGES - OPEN - {room},
-            "edge to the core": room in EDGES and other in {"session", "tracks", "estimator", "gestures"},
+            "edge to the core": room in EDGES and other in CORE,
             "strangers": frozenset({room, other}) in STRANGERS,
             "to the shell": other in SHELL and room not in {"shell", "commands", "__main__"},
             "shell to its own": room == other == "shell" and part not in WIRED.get(file, set()),

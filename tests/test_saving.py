@@ -57,8 +57,8 @@ def write(settings: Settings, orders: dict[int, Command], lost: int = -1) -> tup
 
 
 def work(session: Session) -> None:
-    while (job := session.wanted) is not None:
-        session.adopt(job, job.run())
+    while (job := session.applying.wanted) is not None:
+        session.applying.adopt(job, job.run())
 
 
 @pytest.fixture(scope="module", params=["papers", "default"])
@@ -85,10 +85,10 @@ async def sought(path: Path, places: list[float], key: bytes, fill: bool) -> tup
             if session.land(item):
                 landed += 1
                 assert_same_now(session, item)
-                job = session.filling
+                job = session.applying.filling
                 assert job is not None
                 if fill:
-                    session.filled(job, job.run())
+                    session.applying.filled(job, job.run())
             else:
                 for stretch in item.steps():
                     session.take_stretch(stretch)

@@ -54,8 +54,8 @@ def fed(session: Session, samples: Iterable[Sample]) -> Session:
 
 def settle(session: Session) -> None:
     """What the shell does with ``wanted``, until nothing is."""
-    while (job := session.wanted) is not None:
-        session.adopt(job, job.run())
+    while (job := session.applying.wanted) is not None:
+        session.applying.adopt(job, job.run())
 
 
 def tell(session: Session, *commands: Command) -> None:
@@ -91,11 +91,11 @@ def test_a_candidate_is_the_whole_walk_under_other_settings_then_live_beside_mai
     session = fed(Session(PAPERS), WALK[:1200])
     session.apply(order(GAIN))
     assert session.snapshot().pending
-    assert session.candidate_settings.gain_stance == 2.0
+    assert session.applying.settings.gain_stance == 2.0
     settle(session)
     fed(session, WALK[1200:])
-    assert session.candidate is not None
-    ghost = rows_of(session.candidate.feet["foot"].tracker)
+    assert session.applying.candidate is not None
+    ghost = rows_of(session.applying.candidate.feet["foot"].tracker)
     assert ghost.tobytes() == main_rows(fed(Session(Settings(gain_stance=2.0)), WALK)).tobytes()
     assert_main_is(session, PAPERS, WALK)
 
@@ -103,12 +103,12 @@ def test_a_candidate_is_the_whole_walk_under_other_settings_then_live_beside_mai
 def test_apply_drop_and_undo() -> None:
     session = fed(Session(PAPERS), WALK[:800])
     tell(session, GAIN, ApplyCandidate())
-    assert session.candidate is None
+    assert session.applying.candidate is None
     assert_main_is(session, Settings(gain_stance=2.0), WALK[:800])
     tell(session, OTHER)
-    assert session.candidate_settings == Settings(gain_stance=2.0, threshold_radps=0.7)
+    assert session.applying.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
     tell(session, DropCandidate())
-    assert session.candidate_settings == session.main.settings
+    assert session.applying.settings == session.main.settings
     tell(session, OTHER, ApplyCandidate(), SetCandidate((("gain_swing", 0.1),)), ApplyCandidate())
     assert session.snapshot().undo_depth == 3
     gone = []
@@ -163,7 +163,8 @@ def test_an_impossible_order_changes_nothing(command: Command) -> None:
     session = fed(Session(PAPERS), WALK[:100])
     with pytest.raises(InputError):
         session.apply(order(command))
-    assert (session.wanted, session.candidate, session.main.settings) == (None, None, PAPERS)
+    assert session.main.settings == PAPERS
+    assert (session.applying.wanted, session.applying.candidate) == (None, None)
 
 
 # --- what comes back does not depend on when --------------------------------------------------------
@@ -216,10 +217,10 @@ def played(script: Script) -> Session:
 def test_main_and_candidate_do_not_depend_on_when_work_is_done(script: Script) -> None:
     one, other = played([(n, command, False) for n, command, _ in script]), played(script)
     assert one.main.settings == other.main.settings
-    assert one.candidate_settings == other.candidate_settings
+    assert one.applying.settings == other.applying.settings
     for _sensor in one.main.feet:
         assert main_rows(one).tobytes() == main_rows(other).tobytes()
-    assert bool(one.candidate) == bool(other.candidate)
+    assert bool(one.applying.candidate) == bool(other.applying.candidate)
 
 
 @settings(max_examples=40)
@@ -237,14 +238,14 @@ def test_any_orders_leave_a_session_whole(script: Script) -> None:
 def test_a_late_result_catches_up_with_the_samples_taken_meanwhile() -> None:
     session = fed(Session(PAPERS), WALK[:600])
     session.apply(order(GAIN))
-    job = session.wanted
+    job = session.applying.wanted
     assert job is not None
     track = job.run()
     fed(session, WALK[600:])
-    session.adopt(job, track)
-    assert session.candidate is not None
+    session.applying.adopt(job, track)
+    assert session.applying.candidate is not None
     assert (
-        rows_of(session.candidate.feet["foot"].tracker).tobytes()
+        rows_of(session.applying.candidate.feet["foot"].tracker).tobytes()
         == main_rows(fed(Session(Settings(gain_stance=2.0)), WALK)).tobytes()
     )
 
@@ -252,18 +253,18 @@ def test_a_late_result_catches_up_with_the_samples_taken_meanwhile() -> None:
 def test_an_outdated_result_is_shown_meanwhile_and_after_a_restart_let_go() -> None:
     session = fed(Session(PAPERS), WALK[:300])
     session.apply(order(GAIN))
-    first = session.wanted
+    first = session.applying.wanted
     session.apply(order(OTHER))
-    second = session.wanted
+    second = session.applying.wanted
     assert first is not None
     assert second is not None
-    session.adopt(first, first.run())
-    assert session.candidate is not None
-    assert session.candidate.settings == first.settings
-    assert session.candidate_settings == second.settings
-    assert session.wanted is second
+    session.applying.adopt(first, first.run())
+    assert session.applying.candidate is not None
+    assert session.applying.candidate.settings == first.settings
+    assert session.applying.settings == second.settings
+    assert session.applying.wanted is second
     session.apply(order(RestartHere()))
-    session.adopt(second, second.run())
+    session.applying.adopt(second, second.run())
     assert session.main.feet == {}
 
 
@@ -273,12 +274,12 @@ def test_an_apply_under_way_survives_a_slider_and_a_restart() -> None:
         session.apply(order(command))
     settle(session)
     assert session.main.settings == Settings(gain_stance=2.0)
-    assert session.candidate is not None
-    assert session.candidate.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
+    assert session.applying.candidate is not None
+    assert session.applying.candidate.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
     for later in (ApplyCandidate(), SetCandidate((("gain_swing", 0.5),)), RestartHere()):
         session.apply(order(later))
     assert session.main.settings == Settings(gain_stance=2.0, threshold_radps=0.7)
-    assert session.candidate_settings.gain_swing == 0.5
+    assert session.applying.settings.gain_swing == 0.5
 
 
 def test_a_sensor_that_never_delivered_is_no_foot() -> None:
@@ -324,7 +325,7 @@ def test_restart_forgets_the_walk_and_keeps_settings_and_sliders() -> None:
     )
     samples = Samples("foot", Role.FOOT, 0, matrix, np.empty(0, np.uint16))
     assert main_rows(session).tobytes() == rows_of(estimate(samples, gain_stance=2.0)).tobytes()
-    assert session.candidate is not None
+    assert session.applying.candidate is not None
 
 
 def test_replaying_the_log_repeats_it_to_the_bit() -> None:
@@ -473,8 +474,8 @@ def test_after_the_cut_a_candidate_goes_on_from_mains_checkpoint() -> None:
     assert start
     before = session.snapshot().main.feet[0]
     tell(session, SetCandidate((("gain_swing", 0.001),)))
-    assert session.candidate is not None
-    ghost = session.candidate.feet["foot"].tracker
+    assert session.applying.candidate is not None
+    ghost = session.applying.candidate.feet["foot"].tracker
     assert ghost.rows.start == start
     assert rows_of(ghost)[0, :3] == pytest.approx(main_rows(session)[0, :3], abs=1e-3)
     assert ghost.stride_count == before.strides
@@ -509,14 +510,14 @@ def test_the_trail_before_the_cut_survives_an_apply_and_turns_with_it() -> None:
 def test_a_result_that_comes_after_blocks_have_gone_is_the_same(late: int) -> None:
     session = budgeted(ROOM, LONG[:30_000])
     session.apply(order(GAIN))
-    job = session.wanted
+    job = session.applying.wanted
     assert job is not None
     track = job.run()
     fed(session, LONG[30_000 : 30_000 + late])
-    session.adopt(job, track)
+    session.applying.adopt(job, track)
     settle(session)
-    assert session.candidate is not None
-    ghost, store = session.candidate.feet["foot"].tracker, session.stores["foot"].samples
+    assert session.applying.candidate is not None
+    ghost, store = session.applying.candidate.feet["foot"].tracker, session.stores["foot"].samples
     assert (ghost.rows.start, ghost.rows.end) == (store.start, store.end)
     assert set(session.main.bases()) == {"foot"}
     tell(session, ApplyCandidate(), OTHER, ApplyCandidate())

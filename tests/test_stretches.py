@@ -45,8 +45,8 @@ def in_stretches(edges: list[int], budget: int) -> Session:
 
 def tell(session: Session, at: int) -> None:
     session.apply(Order(SetCandidate((("gain_stance", 0.5 + at / len(LINE)),)), "me", 0))
-    while (job := session.wanted) is not None:
-        session.adopt(job, job.run())
+    while (job := session.applying.wanted) is not None:
+        session.applying.adopt(job, job.run())
 
 
 def assert_same(one: Session, other: Session) -> None:
@@ -58,8 +58,8 @@ def assert_same(one: Session, other: Session) -> None:
         assert (store.elapsed_s, store.saturated) == (twin.elapsed_s, twin.saturated)
         for a, b in ((store.samples, twin.samples), (store.clocks, twin.clocks)):
             np.testing.assert_array_equal(a.table(a.start, a.end), b.table(b.start, b.end))
-    assert (one.candidate is None) == (other.candidate is None)
-    for track, twin_track in ((one.main, other.main), (one.candidate, other.candidate)):
+    assert (one.applying.candidate is None) == (other.applying.candidate is None)
+    for track, twin_track in ((one.main, other.main), (one.applying.candidate, other.applying.candidate)):
         for sensor, foot in track.feet.items() if track else ():
             assert twin_track is not None
             mine, its = foot.tracker, twin_track.feet[sensor].tracker

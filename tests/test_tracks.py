@@ -13,7 +13,8 @@ from app.blocks import BLOCK
 from app.motion.basics import Role, Vector
 from app.motion.samples import Sample
 from app.settings import Settings
-from app.tracks import SensorStore, Track
+from app.stores import SensorStore
+from app.tracks import Track
 from tests.estimator.walks import foot, one_by_one, rows_of
 
 REST: Vector = (0.0, 0.0, -9.8)

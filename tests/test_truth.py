@@ -24,7 +24,7 @@ def test_it_is_the_simulators_own_from_the_first_sample_on() -> None:
     for sample in one_by_one(made.recording.sensors[0]):
         session.take(sample)
     session.snapshot()
-    (walk,) = session._true.values()
+    (walk,) = session._beside._true.values()
     assert len(walk.recent) == KEPT
     for place in list(walk.recent)[::50]:
         position_n, _ = made.truth("foot", np.array([0.0, place.t_s]))
@@ -60,7 +60,7 @@ def test_a_walk_that_begins_anew_has_a_truth_that_does_too() -> None:
     foot = session.snapshot().main.feet[0]
     assert foot.error_m is not None
     assert foot.error_m < 0.1
-    (walk,) = session._true.values()
+    (walk,) = session._beside._true.values()
     true = walk.recent[-1].q_nb
     assert math.remainder(yaw_of(true) - yaw_of(foot.q_nb), math.tau) == pytest.approx(0, abs=0.02)
 

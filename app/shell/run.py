@@ -302,10 +302,10 @@ class Viewer:
             await asyncio.sleep(0)
 
     async def _fill(self) -> None:
-        session, job = self._session, self._session.filling
+        session, job = self._session, self._session.applying.filling
         if job is not None:
             track = await asyncio.get_running_loop().run_in_executor(self._workers, reestimated, job)
-            session.filled(job, track)
+            session.applying.filled(job, track)
             self._fresh.set()
 
     async def _take_stretch(self, stretch: Stretch) -> None:
@@ -383,7 +383,7 @@ class Viewer:
                     self._apply(order)
         except InputError as error:
             self._say(str(error))
-        if self._session.wanted is not None:
+        if self._session.applying.wanted is not None:
             self._work.set()
 
     def _apply(self, order: Order) -> None:
@@ -454,12 +454,12 @@ class Viewer:
         while True:
             await self._work.wait()
             self._work.clear()
-            job = self._session.wanted
+            job = self._session.applying.wanted
             if job is not None:
                 track = await loop.run_in_executor(self._workers, reestimated, job)
-                self._session.adopt(job, track)
+                self._session.applying.adopt(job, track)
                 self._fresh.set()
-                if self._session.wanted is not None:
+                if self._session.applying.wanted is not None:
                     self._work.set()
 
     async def _look_back(self) -> None:

@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from app.applying import Asked
 from app.home import biases, calibrations
 from app.motion.basics import Role
 from app.motion.commands import KnowBias, Order
@@ -49,7 +50,7 @@ def test_a_walk_is_remembered_by_the_next_of_the_same_sensor_and_calibration() -
     first.keep(session)
     again = walked(live())
     assert set(again.biases) == {"foot"}
-    assert "gyro bias remembered" in again.changes[0].what
+    assert "gyro bias remembered" in again.applying.changes[0].what
     assert not walked(live(calibrated="2026-11-01")).biases
     assert not walked(live(info=SourceInfo("serial:/dev/ttyUSB0", "GX1", serials={"foot": "99"}))).biases
 
@@ -74,7 +75,8 @@ def test_the_log_repeats_it_to_the_bit_also_through_a_re_estimation_and_a_restar
         fresh.take(sample)
     rows = rows_of(session.main.feet["foot"].tracker)
     assert rows.tobytes() == rows_of(fresh.main.feet["foot"].tracker).tobytes()
-    job = session._fresh(session._job(Order(told[0].command, "me", 0), KALMAN, False, "again"))
+    asked = Asked(0, Order(told[0].command, "me", 0))
+    job = session.applying._fresh(session.applying._job(asked, KALMAN, False, "again"))
     assert rows.tobytes() == rows_of(job.run().feet["foot"].tracker).tobytes()
     without = Session(KALMAN)
     for sample in SAMPLES:
