@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import ast
 import atexit
+import contextlib
 import hashlib
 import importlib.metadata
 import os
@@ -17,6 +18,7 @@ import platform
 import re
 import shutil
 import tempfile
+import time
 from collections.abc import Callable
 from pathlib import Path
 from typing import ParamSpec, TypeVar
@@ -26,6 +28,9 @@ import platformdirs
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
 _APP = Path(__file__).parent
+
+#: Every version leaves a folder of kernels; one that no start has used for so long is removed.
+FORGOTTEN_S = 60 * 86_400.0
 
 
 def _imported(path: Path, root: Path) -> list[Path]:
@@ -67,10 +72,21 @@ def choose_cache_folder(name: str) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryFile(dir=folder):
             pass
+        os.utime(folder)
+        forget_old(folder.parent)
     except OSError:
         folder = Path(tempfile.mkdtemp(prefix="stridescope-kernels-"))
         atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
+
+
+def forget_old(kernels: Path) -> None:
+    """Remove the folders in ``kernels`` that no start has used for two months."""
+    used_before_s = time.time() - FORGOTTEN_S
+    for folder in kernels.iterdir():
+        with contextlib.suppress(OSError):  # another start may be removing it
+            if folder.stat().st_mtime < used_before_s:
+                shutil.rmtree(folder)
 
 
 #: Names the kernels of this program: the same name, the same numbers.

@@ -6,6 +6,7 @@ import os
 import subprocess
 import sys
 import textwrap
+import time
 from pathlib import Path
 
 import pytest
@@ -60,6 +61,22 @@ def test_hash_leaves_alone_what_no_kernel_sees(house: Path) -> None:
     before = compiled.sources_hash(house)
     (house / "page.py").write_text("COLOUR = 'blue'", "utf-8")
     assert compiled.sources_hash(house) == before
+
+
+def test_what_other_versions_left_long_ago_is_removed(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
+    monkeypatch.setenv("HOME", str(tmp_path))
+    old, recent = compiled.choose_cache_folder("old"), compiled.choose_cache_folder("recent")
+    (old / "a.nbc").write_bytes(b"machine code")
+    long_ago_s = time.time() - 1.1 * compiled.FORGOTTEN_S
+    os.utime(old, (long_ago_s, long_ago_s))
+    used = compiled.choose_cache_folder("used")
+    assert sorted(used.parent.iterdir()) == [recent, used]
+    os.utime(used, (long_ago_s, long_ago_s))
+    assert compiled.choose_cache_folder("used") == used
+    assert used.is_dir(), "a start is a use"
 
 
 def run_a_kernel(home: Path, temporary: Path) -> tuple[Path, int]:
