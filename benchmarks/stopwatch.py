@@ -107,10 +107,10 @@ def main() -> None:
     )
     noted: list[tuple[float, ...]] = []
     if asked.samples:
-        note_samples(viewer._session, noted)
+        note_samples(viewer.walk.session, noted)
     if asked.windows:
         TimedScene.windows = asked.windows
-        note_snapshots(viewer._session)
+        note_snapshots(viewer.walk.session)
     setattr(run, "Scene", TimedScene)  # noqa: B010  (the shell makes its own)
     asyncio.run(viewer.serve(lambda line: print(line, flush=True)))
     if asked.samples:

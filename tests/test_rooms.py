@@ -45,7 +45,9 @@ SHELL = {"shell", "commands", "__main__", "__init__"}
 #: Files of shell/ that others of it wire in.
 WIRED = {
     "measuring": {"doctor"},
-    "run": {"annexe", "aside", "before", "hand_in", "librarian", "remembering"},
+    "run": {"annexe", "aside", "hand_in", "librarian", "serving", "taping", "walk", "work"},
+    "walk": {"before", "remembering", "taping"},
+    "mover": {"aside", "serving"},
     "librarian": {"aside", "shelf"},
 }
 CLOCKS_AND_FILES = {"asyncio", "concurrent", "glob", "http", "multiprocessing", "os", "pathlib", "selectors"}

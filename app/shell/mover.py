@@ -8,8 +8,6 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import logging
-import signal
-import threading
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -22,12 +20,13 @@ from app.gestures.steering import Comfort
 from app.gestures.words import standing
 from app.home import visitors
 from app.home.calibrations import Corrections
-from app.launch import open_in_browser
 from app.motion.basics import InputError, Role, role_of
 from app.motion.commands import MoverCommand, Order, RestartHere
 from app.motion.samples import Sample
 from app.outputs.senders import AxesSender, Outlet, PacketSender
 from app.scene.mover_page import MoverScene
+from app.shell.aside import aside
+from app.shell.serving import Desk, open_door
 from app.simulate.gestures_options import GestureOptions, parse
 from app.sources.opening import open_source
 from app.sources.source import Source
@@ -128,22 +127,6 @@ def asking(address: str) -> str:
     return address + ("&" if "?" in address else "/?")
 
 
-async def prepared(work: Callable[[], None]) -> None:
-    """Run it in a thread that does not hold up Ctrl-C."""
-    loop = asyncio.get_running_loop()
-    done = asyncio.Event()
-
-    def run() -> None:
-        try:
-            work()
-        finally:
-            with contextlib.suppress(RuntimeError):  # the program has ended meanwhile
-                loop.call_soon_threadsafe(done.set)
-
-    threading.Thread(target=run, name="prepare", daemon=True).start()
-    await done.wait()
-
-
 class Mover:
     """One town being walked."""
 
@@ -157,23 +140,18 @@ class Mover:
             simulated=live_options(options),
         )  # fmt: skip
         self._senders = self._open_senders()
-        self._orders: asyncio.Queue[Order] = asyncio.Queue()
-        self._stop = asyncio.Event()
+        self._desk = Desk()
         self._message_until = 0.0
         self._visit: Visit | None = None
 
     async def serve(self, tell: Callable[[str], None]) -> None:
         """Open the page, then everything else."""
-        loop = asyncio.get_running_loop()
-        for number in (signal.SIGINT, signal.SIGTERM):
-            loop.add_signal_handler(number, self._stop.set)
-
-        def submit(order: Order) -> None:
-            with contextlib.suppress(RuntimeError):  # the loop has ended
-                loop.call_soon_threadsafe(self._orders.put_nowait, order)
-
+        self._desk.open()
         scene = MoverScene(
-            submit, self._visiting.town, wall=self._options.wall or (3, 1), kiosk=self._options.kiosk
+            self._desk.submit,
+            self._visiting.town,
+            wall=self._options.wall or (3, 1),
+            kiosk=self._options.kiosk,
         )
         self._closing.callback(scene.close)
         door = Door(
@@ -181,26 +159,17 @@ class Mover:
             extra_head=scene.head,
         )  # fmt: skip
         self._closing.callback(door.stop)
-        door.start()
-        for line in [*door.greeting(), *addresses(door.address, door.watching, self._options)]:
-            tell(line)
-        if self._options.open_browser:
-            open_in_browser(door.address)
-        running = asyncio.create_task(self._run(scene), name="run")
-        stop = asyncio.create_task(self._stop.wait(), name="stop")
-        await asyncio.wait((running, stop), return_when=asyncio.FIRST_COMPLETED)
-        stop.cancel()
-        if not running.done():
-            running.cancel()
-            await asyncio.wait((running,), timeout=1.0)
-        elif not running.cancelled():
-            running.result()  # a fault of ours: let it be seen
+        open_door(
+            door, tell, self._options.open_browser,
+            lambda: addresses(door.address, door.watching, self._options),
+        )  # fmt: skip
+        await self._desk.until_stopped([self._run(scene)])
 
     async def _run(self, scene: MoverScene) -> None:
         """Everything at once, until cancelled. A source that ends is silent from then on."""
         still = asyncio.create_task(self._stand_still(scene))
-        await prepared(warm_gestures)
-        attitude = asyncio.create_task(prepared(warm_attitude))  # for whoever chooses the papers' decoder
+        await aside(warm_gestures, "prepare")
+        attitude = asyncio.create_task(aside(warm_attitude, "prepare"))  # for who chooses the papers' decoder
         if self._options.decoder == "papers":
             await attitude
         still.cancel()
@@ -230,7 +199,7 @@ class Mover:
 
     async def _obey(self) -> None:
         while True:
-            order = await self._orders.get()
+            order = await self._desk.orders.get()
             try:
                 self._take(order)
             except InputError as error:

@@ -1,0 +1,133 @@
+"""Shell: one source being walked: its samples, corrected, into the session and onto the disk."""
+
+from __future__ import annotations
+
+import asyncio
+import time
+from collections.abc import Callable
+from dataclasses import replace
+
+from app.clocks import Clock, clock_for
+from app.motion.basics import Role, role_of
+from app.motion.commands import Order, RestartHere
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import Sample
+from app.motion.source import Link
+from app.motion.status import Status
+from app.session import Session
+from app.settings import Settings
+from app.shell.before import Before
+from app.shell.remembering import Remembering
+from app.shell.taping import Taping
+from app.sources.source import Source
+
+
+class Walk:
+    """A source and its session. Where another source comes, this ends and another walk begins."""
+
+    def __init__(
+        self, source: Source, settings: Settings, budget_bytes: int, epoch: int, taping: Taping
+    ) -> None:
+        """``epoch`` is that of the session when it begins; ``settings`` unless the source has its own."""
+        self.source = source
+        self.before = Before(lambda: source.info, taping.preflight)
+        self.remembering = Remembering(lambda: source.info, self.before.calibrated)
+        self.last_sample_s = time.monotonic()
+        self._taping = taping
+        info = source.info
+        self.session = Session(
+            source.settings or settings, self._role, info.truth, budget_bytes, self._clock, epoch, info.rod_m
+        )
+
+    def close(self) -> None:
+        """Let go of the source, and keep what the walk taught of its sensors."""
+        self.remembering.keep(self.session)
+        self.source.close()
+
+    def apply(self, order: Order) -> None:
+        """Apply it, and record it: one that is refused is refused again in a replay."""
+        try:
+            self.session.apply(order)
+        finally:
+            self._taping.order(order)
+
+    def told(self, status: Status) -> Status:
+        """The status with what is known of the source now."""
+        source = self.source
+        silent = time.monotonic() - self.last_sample_s
+        return replace(
+            status,
+            source=source.info,
+            link=source.link,
+            detail=source.detail,
+            replay=source.replay,
+            stale_s=silent if source.link in (Link.LIVE, Link.LOST) else 0.0,
+            speed=source.speed,
+            loop=source.loop,
+            position_s=source.position_s,
+            errors=source.errors,
+        )
+
+    def health(self) -> dict[str, object]:
+        """For /healthz; read on the door's thread, so only what is one read."""
+        line = {sensor: vars(counters) for sensor, counters in self.source.counters.items()}
+        return {"link": self.source.link.value, "taken": self.session.number, "line": line}
+
+    async def read(
+        self,
+        obey: Callable[[Order], None],
+        changed: Callable[[], None],
+        fill: Callable[[Session], None],
+    ) -> None:
+        """All that the source brings. ``changed``: there is something to draw; ``fill``: after a landing."""
+        async for item in self.source:
+            if isinstance(item, RestartHere):
+                obey(Order(item, "replay", time.monotonic_ns()))
+                self._taping.begin(self.remembering.told)
+            elif isinstance(item, Order):
+                obey(item)
+            elif isinstance(item, Stretch):
+                await self._take_stretch(item, changed)
+            elif isinstance(item, Landing):
+                if self._land(item):
+                    fill(self.session)
+                else:
+                    for stretch in item.steps():
+                        await self._take_stretch(stretch, changed)
+                        await asyncio.sleep(0)
+            else:
+                self._take_sample(item)
+            changed()
+
+    def _take_sample(self, sample: Sample) -> None:
+        sample = self.before.sample(sample)
+        if (known := self.remembering.order(sample.sensor)) is not None:
+            self.apply(known)
+        self.session.take(sample)
+        self._taping.sample(sample)
+        self.last_sample_s = time.monotonic()
+
+    def _land(self, landing: Landing) -> bool:
+        """Show a far place at once; a recording of it wants every sample."""
+        if self._taping.on or self.before.wants_each or not self.session.land(landing):
+            return False
+        self.last_sample_s = time.monotonic()
+        return True
+
+    async def _take_stretch(self, stretch: Stretch, changed: Callable[[], None]) -> None:
+        if self.before.wants_each:
+            for sample in stretch.each():
+                self._take_sample(sample)
+            changed()
+        else:
+            self.session.take_stretch(stretch)
+            self.last_sample_s = time.monotonic()
+            changed()
+            await self._taping.stretch(stretch)
+
+    def _role(self, sensor: str) -> Role:
+        named = self.before.names.get(sensor)
+        return named or self.source.info.sensors.get(sensor) or role_of(sensor)
+
+    def _clock(self, sensor: str) -> Clock:
+        return clock_for(self.source.info, sensor)
