@@ -1,5 +1,7 @@
 """Heart: a visit to the town: samples and commands in, one picture a frame out. Time comes with each call.
 
+A frame has three parts, so that nothing stands between a decision and the way it moves the walker:
+``decide`` what the feet ask for, ``go`` there, and ``look`` at all there is to show, which can wait.
 Two pairs of feet may be heard: the sensors', and simulated ones that the keys or the stroller move.
 """
 
@@ -82,6 +84,8 @@ class Visiting:
         self._keys, self._keyed_ns = "", -STROLL_NS
         self._start_ns: int | None = None  # of the simulated feet's clock
         self._now_ns: int | None = None
+        self._looked_ns: int | None = None
+        self._asked = self.decision  # by the feet, when it was last decided
         self._busy_ns: int | None = None  # when somebody last did something
         self._bob = self._depth = 0.0
         self._lags: deque[float] = deque(maxlen=60)
@@ -152,20 +156,42 @@ class Visiting:
     # --- a frame ----------------------------------------------------------------------------------
 
     def step(self, now_ns: int) -> Visit:
-        """The world at this instant of the host's clock: listen, decide, move."""
-        dt_s = 0.0 if self._now_ns is None else (now_ns - self._now_ns) * 1e-9
-        self._now_ns = now_ns
+        """The world at this instant of the host's clock: listen, decide, move, look."""
+        self.decide(now_ns)
+        self.go(now_ns)
+        return self.look(now_ns)
+
+    def decide(self, now_ns: int) -> None:
+        """What to steer by from now on: what the feet ask for, unless a stop or a fault says otherwise."""
         self._move_puppets(now_ns)
         self.sensors.listen(now_ns)
         hearing = self._heard(now_ns)
-        fault = hearing.fault(now_ns)
-        self.decision = self._judge(hearing, fault, now_ns)
+        self._asked = hearing.decision
+        self.decision = self._judge(hearing, hearing.fault(now_ns), now_ns)
+
+    @property
+    def news(self) -> bool:
+        """Whether the feet have asked for something else since the last ``decide``."""
+        return not self.simulated and self.sensors.decision is not self._asked
+
+    def go(self, now_ns: int) -> tuple[Walker, float]:
+        """Move by what was decided: where the walker is now, and how high the eye, m."""
+        dt_s = 0.0 if self._now_ns is None else (now_ns - self._now_ns) * 1e-9
+        self._now_ns = now_ns
         self.walker = steer(self.walker, self.decision, dt_s, self.town, self._comfort())
-        self._hunt(dt_s)
         self._nod(dt_s)
+        self._note_lag(self._heard(now_ns), now_ns)
+        return self.walker, self._eye_m()
+
+    def look(self, now_ns: int) -> Visit:
+        """What follows from where the walker is (targets, set-up, nobody there), and all there is to show."""
+        dt_s = 0.0 if self._looked_ns is None else (now_ns - self._looked_ns) * 1e-9
+        self._looked_ns = now_ns
+        self._hunt(dt_s)
         self._go_on_with_guide()
         self._watch_idle(now_ns)
-        return self._picture(hearing, fault, now_ns)
+        hearing = self._heard(now_ns)
+        return self._picture(hearing, hearing.fault(now_ns), now_ns)
 
     def _heard(self, now_ns: int) -> Hearing:
         return self._puppets if self._puppeteered(now_ns) else self.sensors
@@ -227,6 +253,9 @@ class Visiting:
         self._depth += (wanted - self._depth) * min(1.0, 2.5 * dt_s)
         self._bob = math.remainder(self._bob + math.tau * min(speed, 2.0) / STEP_M * dt_s, math.tau)
 
+    def _eye_m(self) -> float:
+        return round(EYE_M + self._depth * math.sin(self._bob), 4)
+
     def _go_on_with_guide(self) -> None:
         if self.guide is None or not self.guide.over or self.guide.fitted is None:
             return
@@ -254,7 +283,7 @@ class Visiting:
         left = IDLE_S - self._idle_s(now_ns)
         return Visit(
             t_s=now_ns * 1e-9, north=w.north, east=w.east, heading_rad=w.heading_rad,
-            eye_m=round(EYE_M + self._depth * math.sin(self._bob), 4),
+            eye_m=self._eye_m(),
             speed_mps=math.hypot(w.ahead_mps, w.right_mps), turn_radps=w.turn_radps, motion=d.motion,
             certain=d.certain, confidence=d.confidence, cadence_hz=d.cadence_hz, reason=d.reason,
             feet=hearing.lights(now_ns), fault=fault, message=self.message or hearing.intake.note(),
@@ -264,7 +293,7 @@ class Visiting:
             reached=self.hunt.found > 0 and self.hunt.cheering,
             task=None if self.guide is None else self.guide.task, decoder=hearing.name,
             feet_from=self._feet_from(now_ns), simulated=self._puppeteered(now_ns),
-            latency_ms=self._latency(hearing, now_ns), idle_s=left if left < WARNING_S else None,
+            latency_ms=median(self._lags) if self._lags else None, idle_s=left if left < WARNING_S else None,
             tuning=self.tuning, switches=self.switches, visitors=self.visitors, machines=hearing.machines(),
         )  # fmt: skip
 
@@ -273,13 +302,12 @@ class Visiting:
             return "simulated feet"
         return "the keys have taken over" if self._puppeteered(now_ns) else self.name
 
-    def _latency(self, hearing: Hearing, now_ns: int) -> float | None:
-        """Of the newest sample when a frame first shows it: the median of the last second."""
+    def _note_lag(self, hearing: Hearing, now_ns: int) -> None:
+        """Of the newest sample when a frame first shows it: the median of the last second is told."""
         newest = hearing.newest_host_ns
         if newest is not None and newest != self._lagged_ns:
             self._lagged_ns = newest
             self._lags.append((now_ns - newest) * 1e-6)
-        return median(self._lags) if self._lags else None
 
     def _comfort(self) -> Comfort:
         return Comfort(start_mps2=self.tuning["start_mps2"], most_mps=self.tuning["most_mps"])

@@ -130,15 +130,15 @@ def read_websocket(port: int) -> list[Arrival]:
     return latency.poses(frames, NODE)
 
 
-def read_page(browser: Browser, port: int) -> list[Arrival]:
-    """Poses as three.js has them, in the monotonic clock's nanoseconds."""
+def read_page(browser: Browser, port: int, node: str = NODE, settle_s: float = 2.0) -> list[Arrival]:
+    """Poses of a node as three.js has them, in the monotonic clock's nanoseconds."""
     tab = browser.new_page(viewport={"width": SIZE[0], "height": SIZE[1]})
     try:
         offset_ns = clock_offset_ns(tab)
         tab.goto(f"http://127.0.0.1:{port}/?fixedDpr=1")
-        tab.wait_for_function(READY, arg=NODE, timeout=READY_MS)
-        tab.wait_for_timeout(2000)
-        tab.evaluate(WATCH, NODE)
+        tab.wait_for_function(READY, arg=node, timeout=READY_MS)
+        tab.wait_for_timeout(1000 * settle_s)
+        tab.evaluate(WATCH, node)
         tab.wait_for_timeout(1000 * SECONDS)
         return [(1e6 * at + offset_ns, latency.key(pose)) for at, *pose in tab.evaluate("() => window.seen")]
     finally:

@@ -48,16 +48,21 @@ class MoverScene:
 
     def draw(self, visit: Visit) -> None:
         """Make every browser show this; cheap for what has not changed."""
-        self.move(visit)
+        self.move(visit.north, visit.east, visit.heading_rad, visit.eye_m)
         self.tell(visit)
 
-    def move(self, visit: Visit) -> None:
+    def move(self, north: float, east: float, heading_rad: float, eye_m: float) -> None:
         """Only the place: away at once."""
-        pose = in_view(visit.north, visit.east, visit.heading_rad, visit.eye_m)
+        pose = in_view(north, east, heading_rad, eye_m)
         if pose != self._pose:
             self._pose = pose
             private.force_pose(self._world, *pose)
             self._server.flush()
+
+    @property
+    def due(self) -> bool:
+        """Whether it is time for words, figures or graphs again."""
+        return time.monotonic() >= min(self._next_hud, self._next_text, self._next_graph)
 
     def tell(self, visit: Visit) -> None:
         """Words, figures and graphs, each at its own pace."""

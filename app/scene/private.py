@@ -11,7 +11,6 @@ import socket
 from functools import partial
 from typing import Any
 
-import numpy as np
 import viser
 from viser import _messages
 
@@ -53,12 +52,15 @@ def _free_port() -> int:
 def force_pose(node: viser.SceneNodeHandle, wxyz: Quaternion, position: Vector) -> None:
     """Set a pose whatever it was: the public setter skips moves that ``np.allclose`` calls none.
 
-    Its tolerance grows with the coordinate: 2 mm at 200 m from the start.
+    Its tolerance grows with the coordinate: 2 mm at 200 m from the start. What is the same is not sent again.
     """
-    node._impl.wxyz[:] = np.inf
-    node._impl.position[:] = np.inf
-    node.wxyz = wxyz
-    node.position = position
+    its = node._impl
+    if its.wxyz.tolist() != [*wxyz]:
+        its.wxyz[:] = wxyz
+        its.api._queue_scene_message(_messages.SetOrientationMessage(its.name, wxyz))
+    if its.position.tolist() != [*position]:
+        its.position[:] = position
+        its.api._queue_scene_message(_messages.SetPositionMessage(its.name, position))
 
 
 def control_id(handle: Any) -> str:

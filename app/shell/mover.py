@@ -39,7 +39,10 @@ from app.world import make_town
 log = logging.getLogger(__name__)
 
 FRAME_S = 1 / 60
+#: A place is given so long to leave before words are worked out.
 AWAY_S = 0.004
+#: After a fault in drawing the next try waits so long.
+FAULT_S = 1.0
 STILL_S = 0.5
 MESSAGE_S = 6.0
 #: The walk that OSC calls 1.
@@ -141,6 +144,9 @@ class Mover:
         )  # fmt: skip
         self._senders = self._open_senders()
         self._desk = Desk()
+        self._news = asyncio.Event()  # the feet, or a person, ask for something else
+        self._moved = asyncio.Event()  # a place has just left
+        self._well_again_s = 0.0
         self._message_until = 0.0
         self._visit: Visit | None = None
 
@@ -176,6 +182,7 @@ class Mover:
         self._visiting.visitors = visitors.names()
         async with asyncio.TaskGroup() as tasks:
             tasks.create_task(self._draw(scene))
+            tasks.create_task(self._speak(scene))
             tasks.create_task(self._obey())
             for feed in self._feeds:
                 tasks.create_task(self._acquire(feed))
@@ -196,6 +203,8 @@ class Mover:
                 self._visiting.begin_anew()
             elif isinstance(item, Sample):
                 self._visiting.take(feed.named(item))
+                if self._visiting.news:
+                    self._news.set()
 
     async def _obey(self) -> None:
         while True:
@@ -216,6 +225,7 @@ class Mover:
                 self._say(f"visitor {name}: thresholds as before")
             case MoverCommand() as command:
                 self._visiting.obey(command, time.monotonic_ns())
+                self._news.set()  # a stop is not left to wait either
 
     def _role(self, sensor: str) -> Role:
         if sensor in SIDES:
@@ -233,23 +243,55 @@ class Mover:
     # --- out --------------------------------------------------------------------------------------
 
     async def _draw(self, scene: MoverScene) -> None:
-        """Sixty pictures a second. A fault in drawing is logged and never ends the visit."""
+        """Sixty places a second, and one more as soon as the feet ask for something else."""
         due = time.monotonic()
         while True:
-            try:
-                now_ns = time.monotonic_ns()
-                if self._message_until and now_ns * 1e-9 > self._message_until:
-                    self._say("")
-                self._visit = visit = self._visiting.step(now_ns)
-                scene.move(visit)
-                await asyncio.sleep(AWAY_S)  # viser's thread sends the pose before words keep it waiting
-                scene.tell(visit)
-                self._send(now_ns * 1e-9)
-            except Exception:
-                log.exception("drawing failed")
-                await asyncio.sleep(1.0)
-            due = max(due + FRAME_S, time.monotonic() - FRAME_S)
-            await asyncio.sleep(max(0.001, due - time.monotonic()))
+            self._carefully(self._move, scene)
+            self._moved.set()
+            due = max(due + FRAME_S, time.monotonic())
+            if await self._news_before(due):
+                self._carefully(self._move, scene)
+                await asyncio.sleep(max(0.001, due - time.monotonic()))
+
+    async def _news_before(self, due: float) -> bool:
+        with contextlib.suppress(TimeoutError):
+            async with asyncio.timeout(max(0.001, due - time.monotonic())):
+                return await self._news.wait()
+        return False
+
+    def _move(self, scene: MoverScene) -> None:
+        """Decide and go: the place leaves before anything else is worked out."""
+        self._news.clear()
+        now_ns = time.monotonic_ns()
+        self._visiting.decide(now_ns)
+        walker, eye_m = self._visiting.go(now_ns)
+        scene.move(walker.north, walker.east, walker.heading_rad, eye_m)
+        self._send(now_ns * 1e-9)
+
+    async def _speak(self, scene: MoverScene) -> None:
+        """Words, figures and graphs, after a place has left and well before the next."""
+        while True:
+            await self._moved.wait()
+            self._moved.clear()
+            if scene.due:
+                await asyncio.sleep(AWAY_S)  # viser's and the door's threads have the machine first
+                self._carefully(self._tell, scene)
+
+    def _tell(self, scene: MoverScene) -> None:
+        if self._message_until and time.monotonic() > self._message_until:
+            self._say("")
+        self._visit = self._visiting.look(time.monotonic_ns())
+        scene.tell(self._visit)
+
+    def _carefully(self, show: Callable[[MoverScene], None], scene: MoverScene) -> None:
+        """A fault in drawing is logged, not too often, and never ends the visit."""
+        if time.monotonic() < self._well_again_s:
+            return
+        try:
+            show(scene)
+        except Exception:
+            log.exception("drawing failed")
+            self._well_again_s = time.monotonic() + FAULT_S
 
     def _send(self, now_s: float) -> None:
         packets, axes = self._senders

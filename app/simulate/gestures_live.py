@@ -70,7 +70,8 @@ class LiveFeet:
 
     def pace(self, cadence_hz: float, amplitude: float) -> None:
         """How fast and how lively, from the next action on."""
-        self.options = replace(self.options, cadence_hz=cadence_hz, amplitude=amplitude)
+        if (cadence_hz, amplitude) != (self.options.cadence_hz, self.options.amplitude):
+            self.options = replace(self.options, cadence_hz=cadence_hz, amplitude=amplitude)
 
     def advance(self, to_s: float, start_ns: int, host_ns: int) -> list[Sample]:
         """Both sensors' samples up to ``to_s``, in the order of time; stamps count from ``start_ns``."""
