@@ -11,6 +11,7 @@ import math
 from dataclasses import replace
 from typing import NamedTuple
 
+from app.estimator.feet import Worn
 from app.memory import Memory
 from app.motion.basics import InputError
 from app.motion.commands import (
@@ -197,7 +198,12 @@ class Applying:
             if store.samples:
                 track.drop_before(sensor, store.samples.start)
                 track.advance(sensor, store.samples, bases.get(sensor))
+        track.link(self.worn)
         return True
+
+    def worn(self) -> dict[str, Worn]:
+        """What is known of where each sensor is worn, and of its clock."""
+        return {sensor: store.worn for sensor, store in self._stores.items()}
 
     # --- inside --------------------------------------------------------------------------------------
 
@@ -227,9 +233,12 @@ class Applying:
         """The same job, for the samples that are here now."""
         self._jobs += 1
         stores = {sensor: store.samples.share() for sensor, store in self._stores.items() if store.samples}
-        worn = {sensor: store.worn for sensor, store in self._stores.items()}
-        job = replace(job, number=self._jobs, epoch=self._epoch, biases=dict(self._biases), worn=worn)
-        return replace(job, stores=stores, bases=self.main.bases())
+        bases = self.main.bases()
+        earlier = self.main.earlier(
+            bases, job.settings.start_heading_rad - self.main.settings.start_heading_rad
+        )
+        job = replace(job, number=self._jobs, epoch=self._epoch, biases=dict(self._biases), worn=self.worn())
+        return replace(job, stores=stores, bases=bases, earlier=earlier)
 
     def _apply_candidate(self, asked: Asked) -> None:
         why = self._job(asked, self.settings, True, "applied")
@@ -237,8 +246,10 @@ class Applying:
             self._pass_over()
             self.wanted, self._next = self._fresh(why), None
         elif self.wanted is not None and not self.wanted.apply:
-            w = self.wanted
-            self.wanted = replace(why, number=w.number, epoch=w.epoch, stores=w.stores, bases=w.bases)
+            self.wanted = replace(
+                self.wanted, apply=True, who=why.who, reason=why.reason,
+                host_ns=why.host_ns, taken=why.taken, before=why.before,
+            )  # fmt: skip
         elif self.wanted is None and self.candidate is not None:
             self._make_main(self.candidate, why)
 
@@ -292,9 +303,8 @@ class Applying:
             self.adopt(self._coming, self._coming.run())
         foot = next(iter(self.main.feet.values()), None)
         if foot is not None:
-            settings, rows = self.main.settings, foot.tracker.rows
-            block, place = rows.block(rows.end - 1)
-            yaw = yaw_of(tuple(block[place, ATTITUDE].tolist()))
+            settings, end = self.main.settings, foot.tracker.rows.end
+            yaw = yaw_of(tuple(foot.table(end - 1, end)[0, ATTITUDE].tolist()))
             heading = math.remainder(settings.start_heading_rad - yaw, math.tau)
             changed = settings.with_changes({"start_heading_rad": heading})
             self._want(asked, changed, True, "heading reset")

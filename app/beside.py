@@ -56,7 +56,7 @@ class Beside:
             known = places[sensor] = self._true[sensor].look(store, main.settings)
             if self._errors_at.get(sensor) != known.row:
                 self._errors_at[sensor] = known.row
-                self.errors[sensor] = errors(self._true[sensor].recent, foot.tracker.rows)
+                self.errors[sensor] = errors(self._true[sensor].recent, foot.tracker.rows, foot.turns)
         return places
 
     def trails(self) -> dict[str, Trail]:
@@ -69,7 +69,7 @@ class Beside:
         for sensor, true in self._true.items():
             rows = main.feet[sensor].tracker.rows
             places = true.at(thinned(rows.start, rows.end), stores[sensor], main.settings)
-            found[sensor] = errors(places, rows)
+            found[sensor] = errors(places, rows, main.feet[sensor].turns)
         return found
 
     def own(self, main: Track) -> dict[str, OwnView]:

@@ -38,8 +38,9 @@ class Memory:
             if len(store.samples) <= 2 * BLOCK:
                 return
             frozen = self._frozen.setdefault(sensor, TrailBuilder(f"frozen{epoch}.{sensor}"))
-            rows = main.feet[sensor].tracker.rows
-            frozen.add(rows.table(rows.start, rows.start + BLOCK))
+            foot = main.feet[sensor]
+            begin = foot.tracker.rows.start
+            frozen.add(foot.table(begin, begin + BLOCK))
             store.samples.drop_oldest()
             store.clocks.drop_oldest()
             for track in (main, candidate):

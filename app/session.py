@@ -150,8 +150,10 @@ class Session:
             self._origin_ns = self._origin_ns or store.clock.line.host(first_ns)
             store.origin_ns = self._origin_ns
         self.main.advance(store.sensor, store.samples)
+        self.main.link(self.applying.worn)
         if self.applying.candidate is not None:
             self.applying.candidate.advance(store.sensor, store.samples)
+            self.applying.candidate.link(self.applying.worn)
 
     def _keep_budget(self) -> None:
         self._memory.keep(self.main, self.applying.candidate, self.epoch)

@@ -183,8 +183,8 @@ class Settings(Limited):
         1.0,
         Limit(
             "Feet at most apart", "d", "m",
-            "In hindsight, two feet: how far apart they can be when one touches down, or 0.65 of a longer"
-            " stride; it keeps both headings together. 0: each foot by itself.",
+            "Two feet: how far apart they can be when one touches down, or 0.65 of a longer stride; it keeps"
+            " both walks and headings together. 0: each foot by itself.",
             0.0, 3.0, (0.0, 2.0), 0.05,
             only="kalman",
         ),

@@ -6,16 +6,18 @@ The main estimate, the candidate ("ghost") and what A/B swaps to are all tracks 
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
 from app.blocks import BLOCK, Blocks
 from app.estimator.feet import Worn, link_worn
 from app.estimator.landing import landed
+from app.estimator.linking import ALONE, Linking, Steps
 from app.estimator.smoother import finish
 from app.estimator.tracker import Checkpoint, Tracker
-from app.motion.basics import GaitPhase, Quaternion, Vector
-from app.motion.estimate import ATTITUDE, RowColumn
+from app.estimator.turns import Turns
+from app.motion.basics import Floats, GaitPhase, Quaternion, Vector
+from app.motion.estimate import ATTITUDE, RowColumn, Stride
 from app.motion.recording import Landing
 from app.motion.samples import SAMPLE_WIDTH, GyroBias
 from app.motion.snapshot import Footprint, FootView, TrackView, Trail, TrailPiece
@@ -50,6 +52,9 @@ class FootTrack:
         self._settled = start  # rows the builder has had
         self._segments_seen = 0
         self._footprints: tuple[Footprint, ...] = ()
+        self._told = (0, 0)  # the last of them, and what the link had taken then
+        self._linking: Linking | None = None
+        self._name, self._sensor, self._anew = name, "", 0
 
     def land(self, tracker: Tracker, way: Segments) -> None:
         """Go on as ``tracker``, which comes from a saved state, by the ``way`` to it."""
@@ -59,6 +64,37 @@ class FootTrack:
     def advance(self, store: Blocks) -> None:
         """Take the samples that are new."""
         self.tracker.advance(store)
+
+    def join(self, sensor: str, linking: Linking) -> None:
+        """The walk, which is this sensor's, is turned as ``linking`` says."""
+        self._sensor, self._linking = sensor, linking
+
+    @property
+    def turns(self) -> Turns:
+        """How the walk is turned beside the tracker's own rows."""
+        return self._linking.turns(self._sensor) if self._linking else ALONE
+
+    def table(self, begin: int, end: int) -> Floats:
+        """Rows as they are drawn: a copy, float64 [k, 13]."""
+        rows = self.tracker.rows
+        return self.turns.from_row(max(begin, rows.start), rows.table(begin, end))
+
+    def strides(self, newest: int) -> list[Stride]:
+        """The newest strides, as they are drawn."""
+        tracker = self.tracker
+        both = zip(tracker.strides[-newest:], tracker.steps[-newest:], strict=True)
+        return [self.turns.of_stride(stride, step.contact_row) for stride, step in both]
+
+    def settled_strides(self, newest: int) -> list[Stride]:
+        """Of the newest strides those that will stay where they are drawn."""
+        steps, end = self.tracker.steps[-newest:], self._drawn_end
+        return [s for s, step in zip(self.strides(newest), steps, strict=True) if step.contact_row < end]
+
+    @property
+    def _drawn_end(self) -> int:
+        """Rows before this one are where they will be drawn."""
+        linking = self._linking
+        return linking.drawn_end(self._sensor, self.tracker) if linking else self.tracker.settled_end
 
     @property
     def phase(self) -> GaitPhase:
@@ -82,22 +118,29 @@ class FootTrack:
 
     def settle(self) -> None:
         """Bring the trail up to the swing under way (when somebody looks, not for every sample)."""
-        settled = self.tracker.settled_end
+        settled, linking = self._drawn_end, self._linking
+        if linking is not None and linking.anew != self._anew:
+            self._draw_anew(linking.anew)
         while self._settled < settled:
             breaks = self.tracker.segments[self._segments_seen :]
             stop = min(settled, breaks[0]) if breaks else settled
-            for rows, _ in self.tracker.rows.pieces(self._settled, stop):
-                self.builder.add(rows)
+            for rows, number in self.tracker.rows.pieces(self._settled, stop):
+                self.builder.add(self.turns.from_row(number, rows))
             self._settled = stop
             if breaks and stop == breaks[0]:
                 self._segments_seen += 1
                 self.builder.lift_pen()
 
+    def _draw_anew(self, anew: int) -> None:
+        """The whole walk was turned: its trail begins anew."""
+        self.builder, self._anew = TrailBuilder(f"{self._name}/turned{anew}"), anew
+        self._settled, self._segments_seen = self.tracker.rows.start, 0
+
     def trail(self) -> Trail:
         """The trail now; the swing under way is provisional."""
         self.settle()
-        rows = self.tracker.rows
-        return self.builder.trail(rows.table(max(self._settled, rows.end - BLOCK), rows.end))
+        end = self.tracker.rows.end
+        return self.builder.trail(self.table(max(self._settled, end - BLOCK), end))
 
     def drop_oldest(self) -> None:
         """Let the oldest block of rows go; the trail has it."""
@@ -106,18 +149,17 @@ class FootTrack:
 
     def footprints(self) -> tuple[Footprint, ...]:
         """The newest ones, made anew only when there is a new stride."""
-        strides = self.tracker.strides
-        if strides and (not self._footprints or self._footprints[-1].number != strides[-1].number):
-            self._footprints = tuple(
-                Footprint(s.number, s.end_n, s.heading_rad) for s in strides[-FOOTPRINTS:]
-            )
+        told = (self.tracker.stride_count, self._linking.taken if self._linking else 0)
+        if told != self._told:
+            self._told = told
+            strides = self.strides(FOOTPRINTS)
+            self._footprints = tuple(Footprint(s.number, s.end_n, s.heading_rad) for s in strides)
         return self._footprints
 
     def view(self, store: SensorStore, true: TruePlace | None) -> FootView:
         """This foot now. There must be a sample."""
         tracker = self.tracker
-        block, place = tracker.rows.block(tracker.rows.end - 1)
-        row = block[place].tolist()
+        row = self.table(tracker.rows.end - 1, tracker.rows.end)[0].tolist()
         last = tracker.strides[-1] if tracker.strides else None
         t_s = store.time_ns(tracker.rows.end - 1) * 1e-9
         walking = last is not None and t_s - last.end_s < max(1.5, STANDING * last.duration_s)
@@ -139,7 +181,7 @@ class FootTrack:
             to_start_m=math.hypot(row[0], row[1]),
             trail=self.trail(),
             footprints=self.footprints(),
-            error_m=None if true is None else error_m(true, tracker.rows),
+            error_m=None if true is None else error_m(true, tracker.rows, self.turns),
             trust=tracker.trust,
             compass=tracker.compass.view,
         )
@@ -148,14 +190,19 @@ class FootTrack:
 class Track:
     """Settings and one ``FootTrack`` for each sensor."""
 
-    def __init__(self, name: str, settings: Settings, biases: Biases = NO_BIASES) -> None:
-        """``biases`` are the gyro biases known before the walk, by sensor."""
+    def __init__(
+        self, name: str, settings: Settings, biases: Biases = NO_BIASES, earlier: Steps | None = None
+    ) -> None:
+        """``biases`` are the gyro biases known before the walk, by sensor.
+
+        ``earlier``: the strides of samples that are gone.
+        """
         self.name = name
         self.settings = settings
         self.biases = biases
         self.feet: dict[str, FootTrack] = {}
         self.smoothed_s: float | None = None  # since the first sample; None: nothing is smoothed
-        self.linked = False  # two feet have one heading
+        self.linking = Linking(settings, earlier)
 
     def advance(self, sensor: str, store: Blocks, base: Checkpoint | None = None) -> None:
         """Take a sensor's new samples; a sensor not seen before joins, from ``base`` if blocks are gone."""
@@ -163,7 +210,18 @@ class Track:
         if foot is None:
             known = self.biases.get(sensor)
             foot = self.feet[sensor] = FootTrack(f"{self.name}.{sensor}", store, self.settings, base, known)
+            foot.join(sensor, self.linking)
         foot.advance(store)
+
+    def link(self, worn: Callable[[], Mapping[str, Worn]]) -> None:
+        """Hold two feet together where there is a new stride; ``worn`` is asked only then."""
+        if self.linking.is_due([foot.tracker for foot in self.feet.values()]):
+            self.linking.look({sensor: foot.tracker for sensor, foot in self.feet.items()}, worn())
+
+    @property
+    def linked(self) -> bool:
+        """Whether two feet have one heading."""
+        return self.linking.linked
 
     def look_back(self, stores: Mapping[str, Blocks], worn: Mapping[str, Worn]) -> None:
         """Every sensor's walk in hindsight, where the settings ask for it; two feet together."""
@@ -173,13 +231,23 @@ class Track:
                 self.smoothed_s = max(self.smoothed_s or 0.0, float(block[place, 0]) * 1e-9)
         if self.smoothed_s is not None and self.feet.keys() <= worn.keys():
             trackers = {sensor: foot.tracker for sensor, foot in self.feet.items()}
-            self.linked = link_worn(trackers, worn, stores, self.settings.feet_apart_m)
+            linked = link_worn(trackers, worn, stores, self.settings.feet_apart_m)
+            self.linking = self.linking.after_hindsight(trackers, linked)
+            for sensor, foot in self.feet.items():
+                foot.join(sensor, self.linking)
 
     def drop_before(self, sensor: str, row: int) -> None:
         """Let a sensor's rows before ``row`` go, as its samples have gone."""
         tracker = self.feet[sensor].tracker if sensor in self.feet else None
         while tracker is not None and tracker.rows.start < row:
             tracker.drop_oldest()
+
+    def earlier(self, bases: Mapping[str, Checkpoint], turn_rad: float) -> Steps:
+        """The strides before these checkpoints, in a walk that is turned clockwise about its start."""
+        return {
+            sensor: self.linking.first_steps(sensor, self.feet[sensor].tracker, base.strides, turn_rad)
+            for sensor, base in bases.items()
+        }
 
     def bases(self) -> dict[str, Checkpoint]:
         """For each sensor, the checkpoint at the oldest sample still here."""
@@ -227,12 +295,14 @@ class Reestimation:
     look_back: bool = False  # smooth it when it is there
     biases: Biases = field(default_factory=dict)  # known before the walk
     worn: Mapping[str, Worn] = field(default_factory=dict)  # by sensor
+    earlier: Steps = field(default_factory=dict)  # strides before the bases
 
     def run(self) -> Track:
         """The new track over all samples that were there when the work was given out."""
-        track = Track(f"track{self.number}", self.settings, self.biases)
+        track = Track(f"track{self.number}", self.settings, self.biases, self.earlier)
         for sensor, store in self.stores.items():
             track.advance(sensor, store, self.bases.get(sensor))
+        track.link(lambda: self.worn)
         if self.look_back:
             track.look_back(self.stores, self.worn)
         return track

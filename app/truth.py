@@ -10,6 +10,7 @@ from typing import NamedTuple, Protocol
 import numpy as np
 
 from app.blocks import Blocks
+from app.estimator.turns import Turns
 from app.motion.basics import Floats, Quaternion
 from app.motion.estimate import ATTITUDE, POSITION
 from app.motion.snapshot import Trail
@@ -108,12 +109,13 @@ def thinned(first: int, last: int) -> list[int]:
     return rows
 
 
-def errors(recent: Iterable[TruePlace], rows: Blocks) -> Floats:
-    """Seconds, metres from the truth, pitch of the estimate's ``rows`` [n, 12] and of the truth: [k, 4]."""
+def errors(recent: Iterable[TruePlace], rows: Blocks, turns: Turns) -> Floats:
+    """Seconds, metres from the truth, pitch of the estimate's ``rows`` and of the truth: [k, 4]."""
     known = [true for true in recent if rows.start <= true.row < rows.end]
     if not known:
         return np.empty((0, 4))
     found = np.array([block[place] for block, place in (rows.block(true.row) for true in known)])
+    found = turns.of(found, np.array([true.row for true in known]))
     away = np.linalg.norm(np.array([true.position_n for true in known]) - found[:, POSITION], axis=1)
     t_s, true_q_nb = [true.t_s for true in known], np.array([true.q_nb for true in known])
     return np.stack([t_s, away, pitches(found[:, ATTITUDE]), pitches(true_q_nb)], axis=1)
@@ -126,10 +128,10 @@ def pitches(q_nb: Floats) -> Floats:
     return up
 
 
-def error_m(true: TruePlace, rows: Blocks) -> float:
-    """How far one of the estimate's rows is from the truth."""
-    block, place = rows.block(true.row)
-    return float(np.linalg.norm(true.position_n - block[place, POSITION]))
+def error_m(true: TruePlace, rows: Blocks, turns: Turns) -> float:
+    """How far one of the estimate's rows, turned, is from the truth."""
+    row = turns.of(rows.table(true.row, true.row + 1), np.array([true.row]))[0]
+    return float(np.linalg.norm(true.position_n - row[POSITION]))
 
 
 def attitude(true: TruePlace, rows: Blocks) -> Quaternion:

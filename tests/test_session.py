@@ -560,12 +560,13 @@ def test_two_feet_in_hindsight_have_one_heading_and_the_page_is_told() -> None:
 
     def looked_back() -> Session:
         session = fed(Session(Settings(estimator="kalman", hindsight=True)), both)
-        assert not session.snapshot().main.linked
+        assert session.snapshot().main.smoothed_s is None
         tell(session, LookBack())
         return session
 
     once, again = looked_back(), looked_back()
     assert once.snapshot().main.linked
+    assert once.snapshot().main.smoothed_s is not None
     assert main_rows(once, "right").tobytes() == main_rows(again, "right").tobytes()
     assert not session_of_one().snapshot().main.linked
 

@@ -18,20 +18,12 @@ import numpy as np
 
 from app.blocks import Blocks
 from app.estimator.kalman_state import turn_about_down
+from app.estimator.together import BESIDE_M, BOUND_M, OF_A_STRIDE, START_RAD, TOO_FAR_M, WANDER_RADPS
 from app.estimator.tracker import Tracker
+from app.estimator.turns import turned, turned_attitude
 from app.motion.basics import Floats, Role
 from app.motion.samples import Column
 
-#: Feet stand so far apart, side by side, when a walk begins (as they are drawn).
-BESIDE_M = 0.2
-#: σ of the heading that a gyro's noise gathers, rad/√s, and of the headings at the start, rad: the left
-#: foot's is north for both.
-WANDER_RADPS, START_RAD = 1e-3, (1e-6, 0.2)
-#: What a bias may be, by how sure its foot's filter is, is at least and at most this, rad/s.
-BIAS_RADPS = (5e-4, 4e-3)
-#: σ of the bound, m; a runner's feet are this share of a stride apart at most; feet that stay so far over it
-#: are not one person's.
-BOUND_M, OF_A_STRIDE, TOO_FAR_M = 0.05, 0.65, 0.5
 #: The random walk has at most so many knots, no closer than this; so many strides at least tell anything.
 MOST_KNOTS, KNOT_S, LEAST_STRIDES = 40, 5.0, 3
 #: At most so many contacts are looked at (an odd share, so that both feet's are); the first so many first.
@@ -59,7 +51,7 @@ class Foot(NamedTuple):
         return self.worn.offset_s + elapsed_s * self.worn.pace
 
 
-class Turns(NamedTuple):
+class Turning(NamedTuple):
     """How far a foot's walk has to be turned at these times, rad, clockwise from above."""
 
     t_s: Floats
@@ -100,7 +92,7 @@ def link(feet: list[Foot], apart_m: float) -> bool:
     return True
 
 
-def turns_of(both: tuple[Foot, Foot], apart_m: float) -> tuple[Turns, Turns] | None:
+def turns_of(both: tuple[Foot, Foot], apart_m: float) -> tuple[Turning, Turning] | None:
     """What turns the left and the right foot's walk so that the bound holds; None if nothing does.
 
     The walk is taken from its beginning, twice as much of it each time: where headings drift by more than a
@@ -145,7 +137,7 @@ def turns_of(both: tuple[Foot, Foot], apart_m: float) -> tuple[Turns, Turns] | N
         return None
     left, right = x[:parts], x[parts:]
     at = _shapes(knots_s, knots_s)
-    return Turns(knots_s, at @ left), Turns(knots_s, at @ right + first)
+    return Turning(knots_s, at @ left), Turning(knots_s, at @ right + first)
 
 
 def _least(look: Callable[[Floats], tuple[float, Floats, Floats]], x: Floats, weights: Floats) -> Floats:
@@ -200,7 +192,7 @@ def _shapes(t_s: Floats, knots_s: Floats) -> Floats:
 
 def _weights(foot: Foot, knots_s: Floats, start_rad: float) -> Floats:
     """1/σ of each part."""
-    bias = float(np.clip(np.max(1.0 / np.sqrt(foot.tracker.state["bias_info"][0])), *BIAS_RADPS))
+    _, bias = foot.tracker.method.doubts(foot.tracker.state)
     pieces = 1.0 / (WANDER_RADPS * np.sqrt(np.diff(knots_s)))
     return np.concatenate([[1.0 / start_rad, 1.0 / bias], pieces])
 
@@ -212,7 +204,7 @@ def _first_turn(left: Floats, right: Floats) -> float:
     return float(np.arctan2(sine, cosine))
 
 
-def turn(foot: Foot, turns: Turns) -> None:
+def turn(foot: Foot, turns: Turning) -> None:
     """Turn a foot's rows, strides and state as far as each time says."""
     tracker = foot.tracker
     before: Floats | None = None
@@ -221,10 +213,10 @@ def turn(foot: Foot, turns: Turns) -> None:
         yaw = np.interp(foot.t_s[number : number + len(rows)], turns.t_s, turns.yaw_rad)
         steps = np.diff(rows[:, :2], axis=0, prepend=(rows[:1, :2] if before is None else before[None]))
         before = rows[-1, :2].copy()
-        rows[:, :2] = place + np.cumsum(_turned(steps, yaw), axis=0)
+        rows[:, :2] = place + np.cumsum(turned(steps, yaw), axis=0)
         place = rows[-1, :2].copy()
-        rows[:, 3:5] = _turned(rows[:, 3:5], yaw)
-        rows[:, 6:10] = _turned_attitude(rows[:, 6:10], yaw)
+        rows[:, 3:5] = turned(rows[:, 3:5], yaw)
+        rows[:, 6:10] = turned_attitude(rows[:, 6:10], yaw)
     _turn_strides(foot, turns)
     state = tracker.state[0]
     turn_about_down(state, float(np.interp(foot.t_s[-1], turns.t_s, turns.yaw_rad)))
@@ -233,7 +225,7 @@ def turn(foot: Foot, turns: Turns) -> None:
         state[f"{name}x"], state[f"{name}y"] = state[f"{name}x"] + away[0], state[f"{name}y"] + away[1]
 
 
-def _turn_strides(foot: Foot, turns: Turns) -> None:
+def _turn_strides(foot: Foot, turns: Turning) -> None:
     rows = foot.tracker.rows.table(0, foot.tracker.rows.end)
     told = foot.tracker.strides
     for i, stride in enumerate(told):
@@ -241,16 +233,4 @@ def _turn_strides(foot: Foot, turns: Turns) -> None:
         north, east = (float(np.interp(at_s, foot.t_s, rows[:, k])) for k in (0, 1))
         heading = stride.heading_rad + float(np.interp(at_s, turns.t_s, turns.yaw_rad))
         told[i] = stride._replace(end_n=(north, east, stride.end_n[2]), heading_rad=heading)
-
-
-def _turned(vectors: Floats, yaw: Floats) -> Floats:
-    c, s = np.cos(yaw), np.sin(yaw)
-    return np.column_stack([c * vectors[:, 0] - s * vectors[:, 1], s * vectors[:, 0] + c * vectors[:, 1]])
-
-
-def _turned_attitude(q_nb: Floats, yaw: Floats) -> Floats:
-    w, z = np.cos(0.5 * yaw), np.sin(0.5 * yaw)
-    return np.column_stack([
-        w * q_nb[:, 0] - z * q_nb[:, 3], w * q_nb[:, 1] - z * q_nb[:, 2],
-        w * q_nb[:, 2] + z * q_nb[:, 1], w * q_nb[:, 3] + z * q_nb[:, 0],
-    ])  # fmt: skip
+    foot.tracker.stand()

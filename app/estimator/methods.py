@@ -6,6 +6,8 @@ import math
 from collections.abc import Callable
 from typing import NamedTuple
 
+import numpy as np
+
 from app.estimator import corrections, kalman_run, kalman_state, papers_run, resume, state
 from app.estimator.gait import SWING
 from app.estimator.state import Record
@@ -15,6 +17,9 @@ from app.motion.estimate import Trust
 from app.motion.samples import GyroBias
 from app.rotation import yaw_of
 from app.settings import Settings
+
+#: What a gyro's bias may be, by how sure its filter is, is at least and at most this, rad/s.
+BIAS_RADPS = (5e-4, 4e-3)
 
 
 def _unknown(_: Record, __: float) -> Trust | None:
@@ -30,6 +35,7 @@ class Method(NamedTuple):
     correct: Callable[[Floats, int, Floats, Floats, Record], None]
     moves: Callable[[Record], bool]  # whether rows since the lift may still change
     trust: Callable[[Record, float], Trust | None]  # how sure it is, after so many metres
+    doubts: Callable[[Record], tuple[float, float]]  # as in ``strides.Step``
     events: int  # that a run may report before it pauses for them to be applied
 
 
@@ -45,13 +51,30 @@ def _papers_moves(record: Record) -> bool:
     return bool(record["phase"][0] == SWING or record["contrary_s"][0] > 0.0)
 
 
+def _papers_doubts(_: Record) -> tuple[float, float]:
+    return 0.0, BIAS_RADPS[1]
+
+
+def _kalman_doubts(record: Record) -> tuple[float, float]:
+    state = record[0]
+    known = max(float(np.min(state["bias_info"])), 1e-9)
+    return float(state["unknown_m2"]), min(max(known**-0.5, BIAS_RADPS[0]), BIAS_RADPS[1])
+
+
 def _kalman_moves(record: Record) -> bool:
     return bool(record["moving"][0])
 
 
 METHODS: dict[str, Method] = {
     "papers": Method(
-        _papers_begin, resume.resume, papers_run.run, _papers_correct, _papers_moves, _unknown, events=64
+        _papers_begin,
+        resume.resume,
+        papers_run.run,
+        _papers_correct,
+        _papers_moves,
+        _unknown,
+        _papers_doubts,
+        events=64,
     ),
     "kalman": Method(  # its corrections read the state as the event left it: one event a run
         kalman_state.new_state,
@@ -60,6 +83,7 @@ METHODS: dict[str, Method] = {
         kalman_run.correct,
         _kalman_moves,
         trust_of,
+        _kalman_doubts,
         events=1,
     ),
 }

@@ -25,6 +25,30 @@ class Contact(NamedTuple):
     heading_rad: float
 
 
+class Step(NamedTuple):
+    """What the other foot is told of a stride."""
+
+    start_s: float
+    end_s: float  # the contact, by the sensor's own time from its first sample
+    swing_s: float
+    length_m: float
+    place_n: tuple[float, float]  # the footprint, north and east
+    lift_row: int
+    contact_row: int
+    heading_rad: float  # of the toe there
+    gap_s: float  # without samples since the stride before
+    doubt_m2: float  # σ² that all swings so far add to the position because they did not fit
+    bias_doubt_radps: float  # how well the gyro's bias is known
+
+
+def step_of(stride: Stride, event: Floats, gap_s: float, doubts: tuple[float, float]) -> Step:
+    """A stride that ``event`` ended; ``gap_s`` and ``doubts`` as in ``Step``."""
+    rows = (int(event[Event.LIFT_ROW]), int(event[Event.CONTACT_ROW]))
+    north, east, _ = stride.end_n
+    figures = (stride.start_s, stride.end_s, stride.swing_s, stride.length_m)
+    return Step(*figures, (north, east), *rows, stride.heading_rad, gap_s, *doubts)
+
+
 def turned(contact: Contact, angle_rad: float) -> Contact:
     """The footprint after the whole walk was turned clockwise, seen from above, about its start."""
     c, s = math.cos(angle_rad), math.sin(angle_rad)

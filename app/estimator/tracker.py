@@ -12,7 +12,7 @@ from app.estimator.compass import CompassWatch
 from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
-from app.estimator.strides import Contact, lift_above_line, stride_to, turned
+from app.estimator.strides import Contact, Step, lift_above_line, step_of, stride_to, turned
 from app.motion.basics import Floats
 from app.motion.estimate import ROW_WIDTH, Stride, Trust
 from app.motion.samples import SAMPLE_WIDTH, GyroBias, Samples
@@ -59,8 +59,10 @@ class Tracker:
         self.state = go_on(self.method, self._base.state, settings)
         self.rows = Blocks(ROW_WIDTH, start)
         self.strides: list[Stride] = []
+        self.steps: list[Step] = []  # the same strides, as the other foot is told of them
         self.distance_m = self._base.distance_m
         self.segments: list[int] = []  # rows where a segment begins, but for the first
+        self._gap_s = 0.0  # without samples since the last stride
         self.compass = CompassWatch()
         self.checkpoints: dict[int, Checkpoint] = {}  # before each block's first row
         self._events = np.zeros((self.method.events, EVENT_WIDTH))
@@ -86,6 +88,11 @@ class Tracker:
         if not self.method.moves(self.state):
             return self.rows.end
         return min(int(self.state["lift_row"][0]) + 1, self.rows.end)
+
+    @property
+    def strides_before(self) -> int:
+        """Strides before the first that is told."""
+        return self._base.strides
 
     @property
     def stride_count(self) -> int:
@@ -129,8 +136,16 @@ class Tracker:
             self._look_at_field(samples, int(event[Event.CONTACT_ROW]), last)
         if happened & s.SEGMENT:
             self.segments.append(last - 1)
+            self._gap_s += self._since_before(samples, last - 1)
             self._contact = None
             self.compass.forget()
+
+    def _since_before(self, samples: Blocks, row: int) -> float:
+        """Seconds from the row before to this one."""
+        if row <= samples.start:
+            return 0.0
+        (now, here), (before, there) = samples.block(row), samples.block(row - 1)
+        return float(now[here, 0] - before[there, 0]) * 1e-9
 
     def _look_at_field(self, samples: Blocks, first: int, last: int) -> None:
         """The magnetic field while the foot stood, as far as these rows are in one block."""
@@ -144,6 +159,8 @@ class Tracker:
         risen_m = max((lift_above_line(piece, event) for piece, _ in earlier), default=0.0)
         before = self._contact or self._lifted(event, lift)
         stride = stride_to(before, rows, event, self.stride_count + 1, risen_m)
+        self.steps.append(step_of(stride, event, self._gap_s, self.method.doubts(self.state)))
+        self._gap_s = 0.0
         self._contact = Contact(stride.end_s, stride.end_n, stride.heading_rad)
         self.strides.append(stride)
         self.distance_m += stride.length_m
@@ -153,6 +170,7 @@ class Tracker:
         base = self._base if self.rows.start == 0 else self.checkpoints[self.rows.start]
         self._contact, self.distance_m = base.contact, base.distance_m
         self.strides = [stride for stride in self.strides if stride.number <= base.strides]
+        del self.steps[len(self.strides) :]
         breaks = list(self.segments)
         for event in events:
             while breaks and breaks[0] <= event[Event.LIFT_ROW]:
@@ -161,6 +179,12 @@ class Tracker:
                 event[Event.START + axis] = self._row(max(int(event[Event.LIFT_ROW]), self.rows.start))[axis]
                 event[Event.END + axis] = self._row(int(event[Event.CONTACT_ROW]))[axis]
             self._add_stride(event)
+
+    def stand(self) -> None:
+        """The last footprint is the last stride's, which somebody else has moved."""
+        if self._contact is not None and self.strides:
+            last = self.strides[-1]
+            self._contact = Contact(last.end_s, last.end_n, last.heading_rad)
 
     def _lifted(self, event: Floats, lift: int) -> Contact:
         """Where a segment's first swing began."""

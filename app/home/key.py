@@ -6,14 +6,14 @@ import os
 import secrets
 from pathlib import Path
 
-from app.home import small
+import platformdirs
 
 LENGTH = 32
 
 
 def path() -> Path:
     """Where it lies; it need not exist yet."""
-    return small.folder("key")
+    return Path(platformdirs.user_config_dir("stridescope", appauthor=False)) / "key"
 
 
 def key() -> bytes:

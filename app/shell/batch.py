@@ -12,6 +12,7 @@ import numpy as np
 
 from app.estimator.bias import learnt
 from app.estimator.feet import Worn, link_worn
+from app.estimator.linking import link_walked
 from app.estimator.smoother import finish
 from app.estimator.tracker import Tracker, store, track
 from app.gestures.default import DefaultDecoder
@@ -92,7 +93,10 @@ def estimate(
         estimator_s += time.perf_counter() - began
         trackers[sensor.sensor] = tracker
     began = time.perf_counter()
-    linked = settings.hindsight and link_worn(trackers, worn(recording), stores, settings.feet_apart_m)
+    if settings.hindsight:
+        linked = link_worn(trackers, worn(recording), stores, settings.feet_apart_m)
+    else:
+        linked = link_walked(trackers, worn(recording), settings)
     estimator_s += time.perf_counter() - began
     return Processed(recording, settings, trackers, estimator_s, linked)
 

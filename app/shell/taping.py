@@ -114,7 +114,7 @@ class Taping:
         session = self._session()
         for foot in feet:
             self._recorder.pose(foot.sensor, foot.position_n, foot.q_nb)
-            for stride in session.main.feet[foot.sensor].tracker.strides[-4:]:
+            for stride in session.main.feet[foot.sensor].settled_strides(4):
                 if (session.epoch, stride.number) > self._strides.get(foot.sensor, (0, -1)):
                     self._strides[foot.sensor] = (session.epoch, stride.number)
                     self._recorder.stride(foot.sensor, stride)
