@@ -8,7 +8,7 @@ import math
 from pathlib import Path
 from typing import NamedTuple
 
-from app.home import calibrations
+from app.home import calibrations, small
 from app.motion.basics import InputError, Vector
 from app.motion.samples import GyroBias
 
@@ -36,14 +36,9 @@ def path_of(key: str) -> Path:
 def load(key: str) -> Remembered | None:
     """What is remembered of a sensor; None where nothing is. A damaged file is ``InputError``."""
     path = path_of(key)
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"gyro bias {path}: {path.stat().st_size} bytes, expected one of ours")
-        text = path.read_text("utf-8")
-    except FileNotFoundError:
+    text = small.read(f"gyro bias {path}", path, MOST_BYTES, "one of ours")
+    if text is None:
         return None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"gyro bias {path}: cannot be read: {error}") from None
     found = from_json(text)
     if found is None or found.sensor != key:
         raise InputError(f"gyro bias {path}: expected one of {key!r}, written by this program; delete it")
@@ -52,14 +47,7 @@ def load(key: str) -> Remembered | None:
 
 def save(found: Remembered) -> None:
     """Keep it, in the place of the one before."""
-    path = path_of(found.sensor)
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_suffix(".new")
-        new.write_text(to_json(found), "utf-8")
-        new.replace(path)
-    except OSError as error:
-        raise InputError(f"gyro bias: cannot be saved in {path.parent}: {error.strerror}") from None
+    small.write("gyro bias", path_of(found.sensor), to_json(found))
     log.info("%s: gyro bias remembered", found.sensor)
 
 

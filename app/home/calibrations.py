@@ -7,9 +7,8 @@ import logging
 from collections.abc import Callable
 from pathlib import Path
 
-import platformdirs
-
 from app.calibration.words import Calibration, from_json, to_json
+from app.home import small
 from app.motion.basics import InputError
 from app.motion.samples import Sample
 from app.motion.source import SourceInfo
@@ -21,7 +20,7 @@ MOST_BYTES = 64 * 1024
 
 def folder() -> Path:
     """Where calibrations live; it need not exist."""
-    return Path(platformdirs.user_config_dir("stridescope", appauthor=False)) / "calibrations"
+    return small.folder("calibrations")
 
 
 def key_of(info: SourceInfo, sensor: str) -> str:
@@ -80,14 +79,9 @@ def path_of(key: str) -> Path:
 def load(key: str) -> Calibration | None:
     """The sensor's calibration; None where there is none. A damaged file is ``InputError``."""
     path = path_of(key)
-    try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"calibration {path}: {path.stat().st_size} bytes, expected one of ours")
-        text = path.read_text("utf-8")
-    except FileNotFoundError:
+    text = small.read(f"calibration {path}", path, MOST_BYTES, "one of ours")
+    if text is None:
         return None
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"calibration {path}: cannot be read: {error}") from None
     found = from_json(path.name, text)
     if found.sensor != key:
         raise InputError(f"calibration {path}: it is of {found.sensor!r}, expected {key!r}")
@@ -97,16 +91,13 @@ def load(key: str) -> Calibration | None:
 def save(calibration: Calibration) -> Path:
     """Keep a calibration; the one before it stays beside it as ``.before``."""
     path = path_of(calibration.sensor)
+    small.write("calibration", path, to_json(calibration), before=path.with_suffix(".before"))
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_suffix(".new")
-        new.write_text(to_json(calibration), "utf-8")
-        if path.exists():
-            path.replace(path.with_suffix(".before"))
-        new.replace(path)
         path.with_suffix(".undone").unlink(missing_ok=True)
     except OSError as error:
-        raise InputError(f"calibration: cannot be saved in {path.parent}: {error.strerror}") from None
+        raise InputError(
+            f"calibration {path}: saved, but the one undone stays beside it: {error.strerror}"
+        ) from None
     return path
 
 

@@ -6,14 +6,14 @@ import os
 import secrets
 from pathlib import Path
 
-import platformdirs
+from app.home import small
 
 LENGTH = 32
 
 
 def path() -> Path:
     """Where it lies; it need not exist yet."""
-    return Path(platformdirs.user_config_dir("stridescope", appauthor=False)) / "key"
+    return small.folder("key")
 
 
 def key() -> bytes:

@@ -3,65 +3,49 @@
 from __future__ import annotations
 
 import math
-import re
 import tomllib
 from collections.abc import Mapping
 from pathlib import Path
 
-import platformdirs
-
+from app.home import small
+from app.home.small import NAME, NAMES
 from app.motion.basics import InputError
 
-#: A visitor's name is a file's name and nothing else.
-NAME = re.compile(r"[\w][\w \-]{0,39}")
 MOST_BYTES = 4096
 _KEYS = ("on_radps", "off_radps", "sure_rad", "swapped")
 
 
 def folder() -> Path:
     """Where visitors are kept; it need not exist."""
-    return Path(platformdirs.user_config_dir("stridescope", appauthor=False)) / "visitors"
+    return small.folder("visitors")
 
 
 def place(name: str) -> Path:
     """The file of a visitor; a name that is not a plain file name is ``InputError``."""
     if not NAME.fullmatch(name):
-        raise InputError(f"visitor {name!r}: expected up to 40 letters, digits, spaces, - or _")
+        raise InputError(f"visitor {name!r}: expected {NAMES}")
     return folder() / f"{name}.toml"
 
 
 def names() -> tuple[str, ...]:
     """Who has been here."""
-    try:
-        found = sorted(path.stem for path in folder().glob("*.toml"))
-    except OSError:
-        return ()
-    return tuple(name for name in found if NAME.fullmatch(name))
+    return tuple(small.names_in(folder()))
 
 
 def save(name: str, values: Mapping[str, float | bool]) -> None:
     """Keep thresholds and whether the feet are swapped."""
-    path = place(name)
     lines = [f"{key} = {str(values[key]).lower()}\n" for key in _KEYS if key in values]
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        new = path.with_suffix(".new")
-        new.write_text("".join(lines), "utf-8")
-        new.replace(path)
-    except OSError as error:
-        raise InputError(f"visitor {name!r}: cannot be saved: {error.strerror or error}") from None
+    small.write(f"visitor {name!r}", place(name), "".join(lines))
 
 
 def load(name: str) -> dict[str, float | bool]:
     """What was kept; ``InputError`` names what is wrong with it."""
-    path = place(name)
+    text = small.read(f"visitor {name!r}", place(name), MOST_BYTES, "a few lines")
+    if text is None:
+        raise InputError(f"visitor {name!r}: cannot be read: no such file")
     try:
-        if path.stat().st_size > MOST_BYTES:
-            raise InputError(f"visitor {name!r}: {path.stat().st_size} bytes, expected a few lines")
-        found = tomllib.loads(path.read_text("utf-8"))
-    except (OSError, ValueError, RecursionError) as error:
-        if isinstance(error, InputError):
-            raise
+        found = tomllib.loads(text)
+    except (ValueError, RecursionError) as error:
         raise InputError(f"visitor {name!r}: cannot be read: {error}") from None
     for key, value in found.items():
         number = isinstance(value, int | float) and not isinstance(value, bool)

@@ -5,21 +5,24 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Mapping
+from functools import partial
 
 import viser
 
 from app.motion.basics import Quaternion, Vector
 from app.motion.door import GuiRule
 from app.motion.snapshot import Snapshot
-from app.motion.status import Status
+from app.motion.source import Outline
+from app.motion.status import Reference, Status
 from app.scene import private
 from app.scene.controls import Controls, Submit
 from app.scene.follow import Glide, middle
 from app.scene.ground import Ground
 from app.scene.head import head
-from app.scene.outline import OutlineLines
+from app.scene.once import Once
+from app.scene.outline import outline_lines
 from app.scene.panel import Panel
-from app.scene.reference import ReferenceLine
+from app.scene.reference import reference_line
 from app.scene.shoe import SENSOR_HEIGHT_M
 from app.scene.stage import Stage
 
@@ -52,8 +55,8 @@ class Scene:
         )
         self._ground = Ground(self._server.scene, dark=True)
         self._stage = Stage(self._server.scene)
-        self._reference = ReferenceLine(self._server.scene)
-        self._outline = OutlineLines(self._server.scene)
+        self._reference = Once[Reference](partial(reference_line, self._server.scene))
+        self._outline = Once[Outline](partial(outline_lines, self._server.scene))
         self._theme(dark=True)
         self.panel = Panel(self._controls, self._set_view, self._view)
         self.head = head(self.panel.keys(), self.panel.resets())

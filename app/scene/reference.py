@@ -17,39 +17,25 @@ GPS: Rgb = (86, 180, 233)
 ABOVE_M = 0.006
 
 
-class ReferenceLine:
-    """Drawn once for each track that is opened."""
-
-    def __init__(self, scene: viser.SceneApi) -> None:
-        self._scene = scene
-        self._shown: Reference | None = None
-        self._nodes: list[viser.SceneNodeHandle] = []
-
-    def draw(self, reference: Reference | None) -> None:
-        """Make the page show this track, or none."""
-        if reference is self._shown:
-            return
-        self._shown = reference
-        for node in self._nodes:
-            node.remove()
-        self._nodes = [] if reference is None or not len(reference.segments) else self._made(reference)
-
-    def _made(self, reference: Reference) -> list[viser.SceneNodeHandle]:
-        flat = reference.segments
-        down = np.full((*flat.shape[:2], 1), SENSOR_HEIGHT_M - ABOVE_M, np.float32)
-        line = self._scene.add_line_segments(
-            "/ned/reference",
-            np.concatenate([flat, down], axis=-1),
-            GPS,
-            thickness=2.5,
-            thickness_units="screen",
-        )
-        north, east = (float(value) for value in flat[-1, 1])
-        label = self._scene.add_label(
-            "/ned/reference_name", f"GPS {reference.name}", position=(north, east, SENSOR_HEIGHT_M - 0.1),
-            anchor="bottom-center", font_size_mode="screen", font_screen_scale=0.8,
-        )  # fmt: skip
-        return [line, label]
+def reference_line(scene: viser.SceneApi, reference: Reference) -> list[viser.SceneNodeHandle]:
+    """Its line and its name; nothing where it has no length."""
+    if not len(reference.segments):
+        return []
+    flat = reference.segments
+    down = np.full((*flat.shape[:2], 1), SENSOR_HEIGHT_M - ABOVE_M, np.float32)
+    line = scene.add_line_segments(
+        "/ned/reference",
+        np.concatenate([flat, down], axis=-1),
+        GPS,
+        thickness=2.5,
+        thickness_units="screen",
+    )
+    north, east = (float(value) for value in flat[-1, 1])
+    label = scene.add_label(
+        "/ned/reference_name", f"GPS {reference.name}", position=(north, east, SENSOR_HEIGHT_M - 0.1),
+        anchor="bottom-center", font_size_mode="screen", font_screen_scale=0.8,
+    )  # fmt: skip
+    return [line, label]
 
 
 def told(reference: Reference | None) -> str:

@@ -50,6 +50,38 @@ def floor(foot: FootView) -> float:
     return (level if math.isfinite(level) else 0.0) + SENSOR_HEIGHT_M
 
 
+def moved(p: Vector, offset: Vector) -> Vector:
+    """A place, to its foot's side."""
+    return (p[0] + offset[0], p[1] + offset[1], p[2] + offset[2])
+
+
+class Second:
+    """Another shoe and its trail beside the main one; made when first shown."""
+
+    def __init__(self, scene: viser.SceneApi, kind: str, name: str, role: Role, look: Look) -> None:
+        self._scene, self._kind, self._name, self._role, self._look = scene, kind, name, role, look
+        self._shown: tuple[Shoe, TrailNodes] | None = None
+
+    def draw(self, foot: FootView | OwnView | None, offset: Vector) -> None:
+        """Show it, or nothing."""
+        if foot is None:
+            return self.remove()
+        if self._shown is None:
+            shoe = Shoe(self._scene, f"/ned/{self._kind}/{self._name}", self._role, ghost=self._look.colour)
+            trail = TrailNodes(self._scene, f"{self._name}_{self._kind}", self._look, offset)
+            self._shown = shoe, trail
+        shoe, trail = self._shown
+        trail.draw(foot.trail)
+        if drawable(foot):
+            shoe.pose(unit(foot.q_nb), moved(foot.position_n, offset))
+
+    def remove(self) -> None:
+        """Take it off the page."""
+        for part in self._shown or ():
+            part.remove()
+        self._shown = None
+
+
 class Walker:
     """One foot on the page."""
 
@@ -60,11 +92,9 @@ class Walker:
         self._doubt = Doubt(scene, f"/ned/doubt/{name}", role)
         self._trail = TrailNodes(scene, name, look(role), offset)
         self._prints = Footprints(scene, name, role, offset)
-        self._ghost: Shoe | None = None
-        self._ghost_trail: TrailNodes | None = None
+        self._ghost = Second(scene, "ghost", name, role, GHOST_LOOK)
+        self._own = Second(scene, "own", name, role, OWN_LOOK)
         self._truth_trail: TrailNodes | None = None
-        self._own: Shoe | None = None
-        self._own_trail: TrailNodes | None = None
 
     def draw(self, foot: FootView) -> Vector | None:
         """Show it; returns where it is drawn, or nothing while its pose is no finite number."""
@@ -72,24 +102,16 @@ class Walker:
         self._prints.draw(foot.footprints)
         if not drawable(foot):
             return None
-        place, turn = self._moved(foot.position_n), unit(foot.q_nb)
+        place, turn = moved(foot.position_n, self._offset), unit(foot.q_nb)
         self.shoe.pose(turn, place)
         self._shadow.lie(place, yaw(turn), floor(foot))
         self._doubt.lie(place, floor(foot), foot.trust)
         return place
 
-    def draw_ghost(self, foot: FootView | None) -> None:
-        """The candidate over the whole walk, or nothing."""
-        if foot is None:
-            self._drop_ghost()
-            return
-        if self._ghost is None:
-            self._ghost = Shoe(self._scene, f"/ned/ghost/{self._name}", self._role, ghost=CANDIDATE)
-            self._ghost_trail = TrailNodes(self._scene, f"{self._name}_ghost", GHOST_LOOK, self._offset)
-        if self._ghost_trail is not None:
-            self._ghost_trail.draw(foot.trail)
-        if drawable(foot):
-            self._ghost.pose(unit(foot.q_nb), self._moved(foot.position_n))
+    def draw_beside(self, ghost: FootView | None, own: OwnView | None) -> None:
+        """The candidate over the whole walk, and the walk by the sensor's own orientation, or nothing."""
+        self._ghost.draw(ghost, self._offset)
+        self._own.draw(own, self._offset)
 
     def draw_truth(self, trail: Trail | None) -> None:
         """Where a simulator says that the foot really was."""
@@ -99,41 +121,12 @@ class Walker:
             self._truth_trail = TrailNodes(self._scene, f"{self._name}_truth", TRUTH_LOOK, self._offset)
         self._truth_trail.draw(EMPTY if trail is None else trail)
 
-    def draw_own(self, own: OwnView | None) -> None:
-        """The walk by the sensor's own orientation, or nothing."""
-        if own is None:
-            self._drop_own()
-            return
-        if self._own is None:
-            self._own = Shoe(self._scene, f"/ned/own/{self._name}", self._role, ghost=OWN)
-            self._own_trail = TrailNodes(self._scene, f"{self._name}_own", OWN_LOOK, self._offset)
-        if self._own_trail is not None:
-            self._own_trail.draw(own.trail)
-        if drawable(own):
-            self._own.pose(unit(own.q_nb), self._moved(own.position_n))
-
-    def _drop_own(self) -> None:
-        if self._own is not None and self._own_trail is not None:
-            self._own.remove()
-            self._own_trail.remove()
-            self._own = self._own_trail = None
-
-    def _moved(self, p: Vector) -> Vector:
-        return (p[0] + self._offset[0], p[1] + self._offset[1], p[2] + self._offset[2])
-
-    def _drop_ghost(self) -> None:
-        if self._ghost is not None and self._ghost_trail is not None:
-            self._ghost.remove()
-            self._ghost_trail.remove()
-            self._ghost = self._ghost_trail = None
-
     def remove(self) -> None:
         """Take the foot and all that is its off the page."""
-        self._drop_ghost()
-        self._drop_own()
-        for part in (self.shoe, self._shadow, self._doubt, self._trail, self._prints, self._truth_trail):
-            if part is not None:
-                part.remove()
+        for part in (self._ghost, self._own, self.shoe, self._shadow, self._doubt, self._trail, self._prints):
+            part.remove()
+        if self._truth_trail is not None:
+            self._truth_trail.remove()
 
 
 class Walkers:
@@ -159,9 +152,8 @@ class Walkers:
         places = [self._walkers[f.sensor].draw(f) for f in feet]
         ghosts = {f.sensor: f for f in snapshot.candidate.feet} if snapshot.candidate else {}
         for sensor, walker in self._walkers.items():
-            walker.draw_ghost(ghosts.get(sensor))
             walker.draw_truth(snapshot.truth.get(sensor))
-            walker.draw_own(snapshot.own.get(sensor) if self._show_own else None)
+            walker.draw_beside(ghosts.get(sensor), snapshot.own.get(sensor) if self._show_own else None)
         return [place for place in places if place is not None]
 
     def show_own(self, on: bool) -> None:

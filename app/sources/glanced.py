@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator
 from pathlib import Path
 from typing import BinaryIO
 
 from app.formats.glance import glance
-from app.formats.wire.stream import Counters
 from app.motion.basics import InputError
 from app.motion.commands import ReplayCommand
 from app.motion.source import Link, Outline, SourceInfo
-from app.settings import Settings
 from app.sources.files import printable
-from app.sources.source import Item
+from app.sources.source import Item, Live
 from app.sources.spec import parse_spec
 
 #: Smaller files are read before anybody could look.
@@ -43,28 +41,16 @@ def _read_at(file: BinaryIO, at: int, count: int) -> bytes:
     return file.read(count)
 
 
-class Glanced:
+class Glanced(Live):
     """A source that waits, for as long as somebody reads it."""
 
     link = Link.WAITING
-    replay = False
-    speed = 1.0
-    loop = False
-    position_s = 0.0
-    settings: Settings | None = None
-    made_by: str | None = None
-    errors: Mapping[str, float] | None = None
 
     def __init__(self, outline: Outline, size: int) -> None:
         self.info = SourceInfo(
             outline.name, "Stridescope recording", duration_s=outline.duration_s, outline=outline
         )
         self.detail = f"reading {size / 1e6:.0f} MB"
-
-    @property
-    def counters(self) -> Mapping[str, Counters]:
-        """None are kept."""
-        return {}
 
     def control(self, command: ReplayCommand) -> None:
         """Refused."""
