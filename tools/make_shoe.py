@@ -110,14 +110,14 @@ def capped(rings: list[Floats]) -> trimesh.Trimesh:
 
 def outsole() -> trimesh.Trimesh:
     """The dark tread: from 7 mm up the wall down to the floor."""
-    s = stations(22)
+    s = stations(18)
     low = BOTTOM(s)
     return capped([outline(s, low + 0.008), outline(s, low + 0.002, 0.0005), outline(s, low, 0.004)])
 
 
 def midsole() -> trimesh.Trimesh:
     """The pale foam, bulging a little, with a ledge on top where the upper begins."""
-    s = stations(22)
+    s = stations(18)
     low, high = BOTTOM(s) + 0.008, MIDSOLE_TOP(s)
     return capped([
         outline(s, low, 0.0005), outline(s, 0.5 * (low + high), -0.002), outline(s, high - 0.002, 0.0015),
@@ -136,7 +136,7 @@ def shell(s: Floats, angle: Floats) -> Floats:
     return np.stack([x, np.sign(angle) * np.maximum(half, 0.0) * lean, base + (top - base) * rise], axis=-1)
 
 
-def side(s: Floats, sign: float, count: int = 8) -> trimesh.Trimesh:
+def side(s: Floats, sign: float, count: int = 6) -> trimesh.Trimesh:
     """One side of the upper, up to the ridge or the edge of the opening."""
     low = OPENING(s)[:, None]
     part = np.linspace(0, 1, count)[None]
@@ -153,7 +153,7 @@ def facing(mesh: trimesh.Trimesh, sign: float) -> trimesh.Trimesh:
 
 def upper() -> trimesh.Trimesh:
     """Both sides, joined where they meet."""
-    s = np.unique(np.concatenate([stations(22), np.linspace(0.03, 0.435, 15)]))
+    s = np.unique(np.concatenate([stations(17), np.linspace(0.03, 0.435, 8)]))
     mesh = trimesh.util.concatenate([side(s, 1.0), side(s, -1.0)])
     mesh.merge_vertices(digits_vertex=5)
     return mesh
@@ -161,14 +161,14 @@ def upper() -> trimesh.Trimesh:
 
 def rim() -> Floats:
     """The edge of the ankle opening [n, 3], once round."""
-    s = np.concatenate([[0.032, 0.04], np.linspace(0.055, 0.433, 17)])
+    s = np.concatenate([[0.032, 0.04], np.linspace(0.055, 0.433, 11)])
     angle = np.maximum(OPENING(s), 1e-6)
     return np.concatenate([shell(s, angle), shell(s, -angle)[::-1][1:-1]])
 
 
 def collar() -> trimesh.Trimesh:
     """The padded rim of the ankle opening."""
-    return tube(rim(), 0.0052, 6, closed=True)
+    return tube(rim(), 0.0052, 5, closed=True)
 
 
 def lining() -> trimesh.Trimesh:
@@ -201,15 +201,15 @@ def laces() -> trimesh.Trimesh:
     """Bars across the vamp, each lying on the upper."""
     bars = []
     for s in np.linspace(0.475, 0.70, 5):
-        angle = np.linspace(-0.62, 0.62, 7)
-        path = shell(np.full(7, s), angle) + [0.0, 0.0, 0.0015]
-        bars.append(tube(path, 0.0026, 5))
+        angle = np.linspace(-0.62, 0.62, 5)
+        path = shell(np.full(5, s), angle) + [0.0, 0.0, 0.0015]
+        bars.append(tube(path, 0.0026, 4))
     return trimesh.util.concatenate(bars)
 
 
 def toe_cap() -> trimesh.Trimesh:
     """The rand round the toe, a hair outside the upper."""
-    s = stations(10, 0.78, 1.0)
+    s = stations(8, 0.78, 1.0)
     part = np.linspace(0, 1, 4)[None]
     top = np.interp(s, [0.78, 0.86, 1.0], [1.5, 1.25, 0.98])[:, None]
     angle = top + (0.5 * np.pi - top) * part
@@ -222,7 +222,7 @@ def toe_cap() -> trimesh.Trimesh:
 
 def stripe() -> trimesh.Trimesh:
     """A slanting band on either side."""
-    part = np.linspace(0, 1, 7)
+    part = np.linspace(0, 1, 6)
     angle = 1.36 - 0.78 * part
     out = np.array([1.0, 1.035, 1.004])
     bands = []
@@ -244,7 +244,7 @@ def sensor() -> trimesh.Trimesh:
 
 def light() -> trimesh.Trimesh:
     """The sensor's lamp, on its lid towards the toe."""
-    lamp = trimesh.creation.icosphere(1, 0.0035)
+    lamp = trimesh.creation.icosphere(0, 0.0035)
     return lamp.apply_translation(np.array(SENSOR_M) + [0.011, 0.0, 0.008])
 
 

@@ -1,8 +1,12 @@
-"""Edge, scene: footprints: one mesh of all prints on the floor, numbers over the newest."""
+"""Edge, scene: footprints on the floor, a mesh for every few, numbers over the newest.
+
+Plain colours, no light: viser's lit mesh costs much more to draw without a graphics card.
+"""
 
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import viser
@@ -10,13 +14,19 @@ from numpy.typing import NDArray
 
 from app.motion.basics import Role, Vector
 from app.motion.snapshot import Footprint
+from app.scene.baked import linear
 from app.scene.colours import FOOT, Rgb, blend, shade
+from app.scene.glb import Part, glb
 from app.scene.guard import FAR_M
 from app.scene.shoe import SENSOR_HEIGHT_M, sole
 
-PRINTS = 40  # drawn at most: 18 kB a stride
+PRINTS = 40  # drawn at most
+GROUP = 8  # in a mesh: a stride sends no more than these again
+#: What a mesh is replaced by takes a moment to appear; so long both are there.
+BOTH_S = 0.3
 NUMBERED = 8
 PALE: Rgb = (120, 130, 142)
+PRINT_SHADE = 0.8
 ABOVE_FLOOR_M = 0.003
 
 
@@ -34,37 +44,71 @@ def finite(foot: Footprint) -> bool:
     return all(abs(v) < FAR_M for v in foot.position_n) and math.isfinite(foot.heading_rad)
 
 
+def grouped(prints: list[Footprint]) -> dict[int, tuple[Footprint, ...]]:
+    """Those that share a mesh, by their strides' numbers."""
+    keys = sorted({foot.number // GROUP for foot in prints})
+    return {key: tuple(foot for foot in prints if foot.number // GROUP == key) for key in keys}
+
+
+def same(shown: tuple[Footprint, ...], wanted: tuple[Footprint, ...]) -> bool:
+    """Whether a mesh may stay: the oldest are not taken away one by one."""
+    return bool(wanted) and shown[-len(wanted) :] == wanted
+
+
+def printed(prints: tuple[Footprint, ...], role: Role) -> bytes:
+    """These prints as one mesh, binary glTF."""
+    outline, fan = sole(role is Role.LEFT)
+    vertices = np.concatenate([placed(outline, foot) for foot in prints])
+    faces = np.concatenate([fan + np.uint32(i * len(outline)) for i in range(len(prints))])
+    ink = linear(shade(blend(FOOT[role], PALE, 0.3), PRINT_SHADE))
+    return glb([Part("soles", vertices, faces, np.tile(ink, (len(vertices), 1)), open=True)])
+
+
 class Footprints:
     """The prints of one foot, in a frame moved aside by ``offset``."""
 
     def __init__(self, scene: viser.SceneApi, name: str, role: Role, offset: Vector) -> None:
-        self._root = scene.add_frame(f"/ned/prints/{name}", show_axes=False, position=offset)
-        self._outline, fan = sole(role is Role.LEFT)
-        faces = np.concatenate([fan + i * len(self._outline) for i in range(PRINTS)])
-        self._soles = scene.add_mesh_simple(
-            f"/ned/prints/{name}/soles", np.zeros((PRINTS * len(self._outline), 3)), faces,
-            color=shade(blend(FOOT[role], PALE, 0.3), 0.8), side="double", cast_shadow=False,
-            flat_shading=True,
-        )  # fmt: skip
-        self._labels = [self._label(scene, f"/ned/prints/{name}/number_{i}") for i in range(NUMBERED)]
+        self._scene, self._name, self._role = scene, f"/ned/prints/{name}", role
+        self._root = scene.add_frame(self._name, show_axes=False, position=offset)
+        self._groups: dict[int, tuple[tuple[Footprint, ...], viser.GlbHandle]] = {}
+        self._leaving: list[tuple[float, viser.GlbHandle]] = []
+        self._names = [f"{self._name}/soles_{i}" for i in range(4 * (PRINTS // GROUP + 1))]  # not in use
+        self._labels = [self._label(scene, f"{self._name}/number_{i}") for i in range(NUMBERED)]
         self._drawn: tuple[Footprint, ...] = ()
 
     def draw(self, footprints: tuple[Footprint, ...]) -> None:
         """Make the page show the newest of these."""
+        self._let_go()
         if footprints is self._drawn or footprints == self._drawn:
             return
         self._drawn = footprints
         newest = [f for f in footprints if finite(f)][-PRINTS:]
-        self._draw_soles(newest)
+        self._draw_groups(newest)
         for i, label in enumerate(self._labels):
             self._draw_number(label, newest[-1 - i] if i < len(newest) else None)
 
-    def _draw_soles(self, prints: list[Footprint]) -> None:
-        """Always as many triangles: those of no print are points where the last one is."""
-        drawn = [placed(self._outline, foot) for foot in prints]
-        point = drawn[-1][:1] if drawn else np.zeros((1, 3), np.float32)
-        rest = np.tile(point, ((PRINTS - len(drawn)) * len(self._outline), 1))
-        self._soles.vertices = np.concatenate([*drawn, rest])
+    def _draw_groups(self, prints: list[Footprint]) -> None:
+        """Send again only the groups in which something is new."""
+        wanted = grouped(prints)
+        gone = [key for key, (shown, _) in self._groups.items() if not same(shown, wanted.get(key, ()))]
+        until_s = time.monotonic() + BOTH_S
+        self._leaving += [(until_s, self._groups.pop(key)[1]) for key in gone]
+        for key in wanted.keys() - self._groups.keys():
+            while not self._names:  # many corrections at once
+                self._free()
+            file, name = printed(wanted[key], self._role), self._names.pop(0)
+            node = self._scene.add_glb(name, file, cast_shadow=False, receive_shadow=False)
+            self._groups[key] = (wanted[key], node)
+
+    def _let_go(self) -> None:
+        while self._leaving and self._leaving[0][0] < time.monotonic():
+            self._free()
+
+    def _free(self) -> None:
+        """Take the mesh away that was replaced first; its name is used again, so that viser keeps no more."""
+        node = self._leaving.pop(0)[1]
+        self._names.append(node.name)
+        node.remove()
 
     def _label(self, scene: viser.SceneApi, name: str) -> viser.LabelHandle:
         return scene.add_label(

@@ -60,7 +60,7 @@ def on_floor(flat: NDArray[np.float64], above_m: float = 0.004) -> NDArray[np.fl
     return np.concatenate([flat, down], axis=-1).astype(np.float32)
 
 
-def circle(radius_m: float, count: int = 96) -> NDArray[np.float64]:
+def circle(radius_m: float, count: int = 48) -> NDArray[np.float64]:
     """A circle round the start as segments [count, 2, 2]."""
     angle = np.linspace(0, 2 * math.pi, count + 1)
     points = radius_m * np.stack([np.cos(angle), np.sin(angle)], axis=1)
@@ -78,7 +78,7 @@ def rose() -> NDArray[np.float32]:
     """The compass rose without its north: segments [k, 2, 3]."""
     letters = [("E", (0.0, 0.76)), ("S", (-0.76, 0.0)), ("W", (0.0, -0.76))]
     parts = [on_floor(circle(0.62)), on_floor(ticks(0.58, 0.62, 10)), on_floor(ticks(0.54, 0.62, 30)),
-             on_floor(circle(0.05, 24)), *(strokes(letter, at, 0.12) for letter, at in letters)]  # fmt: skip
+             on_floor(circle(0.05, 12)), *(strokes(letter, at, 0.12) for letter, at in letters)]  # fmt: skip
     return np.concatenate(parts)
 
 

@@ -30,7 +30,7 @@ log = logging.getLogger(__name__)
 
 #: North–east–down into viser's east–north–up: half a turn about the line between north and east.
 NED_WXYZ: Quaternion = (0.0, 0.5**0.5, 0.5**0.5, 0.0)
-TEXT_S, GRAPH_S = 0.1, 0.08
+TEXT_S, GRAPH_S = 0.125, 0.125
 LONGEST_STEP_S = 0.1
 
 

@@ -139,7 +139,7 @@ class Shoe:
 def sole(mirrored: bool) -> Mesh:
     """The print of the sole: a flat fan, in the shoe's x and y, around the sensor."""
     x, y = parts(mirrored)["outsole"][0][:, :2].astype(np.float64).T
-    at = 0.5 * (x.min() + x.max()) - 0.5 * (x.max() - x.min()) * np.cos(np.linspace(0.12, np.pi - 0.12, 15))
+    at = 0.5 * (x.min() + x.max()) - 0.5 * (x.max() - x.min()) * np.cos(np.linspace(0.12, np.pi - 0.12, 12))
     right, left = (_edge(x, y * side, at) * side for side in (1.0, -1.0))
     edge = np.concatenate([np.stack([at, right], axis=1), np.stack([at, left], axis=1)[::-1]])
     centre = edge.mean(axis=0)
@@ -151,6 +151,6 @@ def sole(mirrored: bool) -> Mesh:
 
 def _edge(x: NDArray[np.float64], y: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
     """How far to the right the points reach at each of ``at``."""
-    outer = [int(np.argmax(np.where(np.abs(x - a) < 0.009, y, -np.inf))) for a in at]
+    outer = [int(np.argmax(np.where(np.abs(x - a) < 0.014, y, -np.inf))) for a in at]
     order = np.argsort(x[outer])
     return np.interp(at, x[outer][order], y[outer][order])
