@@ -305,6 +305,7 @@ class Applying:
         if foot is not None:
             settings, end = self.main.settings, foot.tracker.rows.end
             yaw = yaw_of(tuple(foot.table(end - 1, end)[0, ATTITUDE].tolist()))
+            yaw += foot.toe.angle_rad if foot.toe else 0.0
             heading = math.remainder(settings.start_heading_rad - yaw, math.tau)
             changed = settings.with_changes({"start_heading_rad": heading})
             self._want(asked, changed, True, "heading reset")

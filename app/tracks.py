@@ -14,10 +14,11 @@ from app.estimator.feet import Worn, link_worn
 from app.estimator.landing import landed
 from app.estimator.linking import ALONE, Linking, Steps
 from app.estimator.smoother import finish
+from app.estimator.toes import Toes
 from app.estimator.tracker import Checkpoint, Tracker
 from app.estimator.turns import Turns
 from app.motion.basics import Floats, GaitPhase, Quaternion, Vector
-from app.motion.estimate import ATTITUDE, RowColumn, Stride
+from app.motion.estimate import ATTITUDE, RowColumn, Stride, Toe
 from app.motion.recording import Landing
 from app.motion.samples import SAMPLE_WIDTH, GyroBias
 from app.motion.snapshot import Footprint, FootView, TrackView, Trail, TrailPiece
@@ -52,7 +53,8 @@ class FootTrack:
         self._settled = start  # rows the builder has had
         self._segments_seen = 0
         self._footprints: tuple[Footprint, ...] = ()
-        self._told = (0, 0)  # the last of them, and what the link had taken then
+        self._told: object = None  # what they were made of
+        self._toes = Toes()
         self._linking: Linking | None = None
         self._name, self._sensor, self._anew = name, "", 0
 
@@ -149,12 +151,18 @@ class FootTrack:
 
     def footprints(self) -> tuple[Footprint, ...]:
         """The newest ones, made anew only when there is a new stride."""
-        told = (self.tracker.stride_count, self._linking.taken if self._linking else 0)
+        toe_rad = self.toe.angle_rad if self.toe else 0.0
+        told = (self.tracker.stride_count, self._linking.taken if self._linking else 0, toe_rad)
         if told != self._told:
             self._told = told
             strides = self.strides(FOOTPRINTS)
-            self._footprints = tuple(Footprint(s.number, s.end_n, s.heading_rad) for s in strides)
+            self._footprints = tuple(Footprint(s.number, s.end_n, s.heading_rad + toe_rad) for s in strides)
         return self._footprints
+
+    @property
+    def toe(self) -> Toe | None:
+        """Where the toe points beside the sensor's x axis, by the strides so far."""
+        return self._toes.look(self.tracker.steps, self.tracker.rows)
 
     def view(self, store: SensorStore, true: TruePlace | None) -> FootView:
         """This foot now. There must be a sample."""
@@ -184,6 +192,7 @@ class FootTrack:
             error_m=None if true is None else error_m(true, tracker.rows, self.turns),
             trust=tracker.trust,
             compass=tracker.compass.view,
+            toe=self.toe,
         )
 
 

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion.basics import Floats, Vector
+from app.motion.basics import Floats, Quaternion, Vector
 from app.settings import Settings
 
 
@@ -73,6 +73,14 @@ class Compass(NamedTuple):
 
     steady: bool
     why: str  # empty where it is steady
+
+
+class Toe(NamedTuple):
+    """Where a shoe's toe points beside its sensor's x axis, as its strides told."""
+
+    angle_rad: float  # clockwise from above
+    strides: int  # that told it
+    q_bs: Quaternion  # takes the shoe's vectors into the sensor's
 
 
 class Saved(NamedTuple):

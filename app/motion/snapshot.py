@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from app.motion.basics import Floats, GaitPhase, Quaternion, Role, Vector
-from app.motion.estimate import Compass, Trust
+from app.motion.estimate import Compass, Toe, Trust
 from app.motion.health import Health
 from app.settings import Settings
 
@@ -71,6 +71,7 @@ class FootView(NamedTuple):
     error_m: float | None  # distance to the simulator's truth
     trust: Trust | None = None  # None: the estimator does not know
     compass: Compass | None = None  # None: no magnetic field, or too few footprints
+    toe: Toe | None = None  # None: the sensor looks along it, or too few strides told
 
 
 class TrackView(NamedTuple):

@@ -109,8 +109,22 @@ def _card(foot: FootView) -> str:
     return (
         f'<div class="ss-card ss-{foot.role.value}"><div class="ss-card-head"><span class="ss-dot"></span>'
         f'{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class="ss-tiles">{grid}</div>'
-        f"{compass(foot)}</div>"
+        f"{toe(foot)}{compass(foot)}</div>"
     )
+
+
+def toe(foot: FootView) -> str:
+    """How the sensor sits on the shoe, where the first strides told that it looks elsewhere."""
+    if foot.toe is None:
+        return ""
+    degrees = round(math.degrees(foot.toe.angle_rad))
+    side = "left" if degrees > 0 else "right"
+    how = (
+        f"the sensor is mounted {abs(degrees)}° to the {side}"
+        if abs(degrees) < 170
+        else "the sensor looks backward"
+    )
+    return f'<div class="ss-note">Toe direction found from {foot.toe.strides} strides: {how}.</div>'
 
 
 def compass(foot: FootView) -> str:

@@ -11,6 +11,7 @@ import viser
 from numpy.typing import NDArray
 
 from app.motion.basics import Quaternion, Role, Vector
+from app.motion.estimate import Toe
 from app.rotation import from_yaw
 from app.scene import private
 from app.scene.baked import apart, lit
@@ -118,13 +119,20 @@ class Shoe:
         self.frame = scene.add_frame(name, show_axes=False, axes_length=0.09, axes_radius=0.0022)
         self._last: tuple[Quaternion, Vector] | None = None
         made = solid(role) if ghost is None else sheer(role, ghost)
-        scene.add_glb(f"{name}/body", made, cast_shadow=False, receive_shadow=False)
+        self._body = scene.add_glb(f"{name}/body", made, cast_shadow=False, receive_shadow=False)
+        self._toe: Toe | None = None
 
     def pose(self, q_nb: Quaternion, position: Vector) -> None:
         """Where it is now; nothing is sent while it has not moved."""
         if (q_nb, position) != self._last:
             private.force_pose(self.frame, q_nb, position)
             self._last = (q_nb, position)
+
+    def point(self, toe: Toe | None) -> None:
+        """Turn the shoe under its sensor, whose axes stay."""
+        if toe != self._toe:
+            self._toe = toe
+            self._body.wxyz = toe.q_bs if toe else (1.0, 0.0, 0.0, 0.0)
 
     def show_axes(self, on: bool) -> None:
         """The sensor's axes: x (red) toe, y (green) right, z (blue) down."""

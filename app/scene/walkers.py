@@ -8,7 +8,9 @@ from collections.abc import Iterable
 import viser
 
 from app.motion.basics import Role, Vector
+from app.motion.estimate import Toe
 from app.motion.snapshot import FootView, OwnView, Snapshot, Trail
+from app.rotation import multiply
 from app.scene.colours import CANDIDATE, FOOT, OWN, TRUTH, Rgb, blend
 from app.scene.doubt import Doubt
 from app.scene.footprints import Footprints
@@ -62,8 +64,8 @@ class Second:
         self._scene, self._kind, self._name, self._role, self._look = scene, kind, name, role, look
         self._shown: tuple[Shoe, TrailNodes] | None = None
 
-    def draw(self, foot: FootView | OwnView | None, offset: Vector) -> None:
-        """Show it, or nothing."""
+    def draw(self, foot: FootView | OwnView | None, offset: Vector, toe: Toe | None) -> None:
+        """Show it, or nothing; its toe points where the main one's does."""
         if foot is None:
             return self.remove()
         if self._shown is None:
@@ -74,6 +76,7 @@ class Second:
         trail.draw(foot.trail)
         if drawable(foot):
             shoe.pose(unit(foot.q_nb), moved(foot.position_n, offset))
+            shoe.point(toe)
 
     def remove(self) -> None:
         """Take it off the page."""
@@ -95,23 +98,26 @@ class Walker:
         self._ghost = Second(scene, "ghost", name, role, GHOST_LOOK)
         self._own = Second(scene, "own", name, role, OWN_LOOK)
         self._truth_trail: TrailNodes | None = None
+        self._toe: Toe | None = None
 
     def draw(self, foot: FootView) -> Vector | None:
         """Show it; returns where it is drawn, or nothing while its pose is no finite number."""
+        self._toe = foot.toe
         self._trail.draw(foot.trail)
         self._prints.draw(foot.footprints)
         if not drawable(foot):
             return None
         place, turn = moved(foot.position_n, self._offset), unit(foot.q_nb)
         self.shoe.pose(turn, place)
-        self._shadow.lie(place, yaw(turn), floor(foot))
+        self.shoe.point(foot.toe)
+        self._shadow.lie(place, yaw(multiply(turn, foot.toe.q_bs) if foot.toe else turn), floor(foot))
         self._doubt.lie(place, floor(foot), foot.trust)
         return place
 
     def draw_beside(self, ghost: FootView | None, own: OwnView | None) -> None:
         """The candidate over the whole walk, and the walk by the sensor's own orientation, or nothing."""
-        self._ghost.draw(ghost, self._offset)
-        self._own.draw(own, self._offset)
+        self._ghost.draw(ghost, self._offset, self._toe)
+        self._own.draw(own, self._offset, self._toe)
 
     def draw_truth(self, trail: Trail | None) -> None:
         """Where a simulator says that the foot really was."""

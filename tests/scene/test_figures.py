@@ -6,7 +6,7 @@ from dataclasses import replace
 import pytest
 
 from app.motion.basics import GaitPhase
-from app.motion.estimate import Compass, Trust
+from app.motion.estimate import Compass, Toe, Trust
 from app.motion.snapshot import Change, Snapshot
 from app.motion.source import Link
 from app.motion.status import Status
@@ -137,3 +137,14 @@ def test_a_field_that_strays_is_said_with_what_of_it() -> None:
     assert "strays by 12 %" in figures.compass(
         foot._replace(compass=Compass(False, "its dip strays by 12 %"))
     )
+
+
+def test_how_a_sensor_sits_on_its_shoe_is_told() -> None:
+    alone = fakes.snapshot(9.7)
+    assert "Toe direction" not in figures.feet(alone)
+    for degrees, words in ((87.2, "87° to the left"), (-18.0, "18° to the right"), (-178.0, "backward")):
+        toe = Toe(math.radians(degrees), 5, (1.0, 0.0, 0.0, 0.0))
+        feet = (alone.main.feet[0]._replace(toe=toe),)
+        told = figures.feet(replace(alone, main=alone.main._replace(feet=feet)))
+        assert "Toe direction found from 5 strides" in told
+        assert words in told
