@@ -142,9 +142,9 @@ def test_a_field_that_strays_is_said_with_what_of_it() -> None:
 def test_how_a_sensor_sits_on_its_shoe_is_told() -> None:
     alone = fakes.snapshot(9.7)
     assert "Toe direction" not in figures.feet(alone)
-    for degrees, words in ((87.2, "87° to the left"), (-18.0, "18° to the right"), (-178.0, "backward")):
+    for degrees, how in ((87.2, "87° to the left"), (-18.0, "18° to the right"), (-178.0, "backward")):
         toe = Toe(math.radians(degrees), 5, (1.0, 0.0, 0.0, 0.0))
         feet = (alone.main.feet[0]._replace(toe=toe),)
         told = figures.feet(replace(alone, main=alone.main._replace(feet=feet)))
         assert "Toe direction found from 5 strides" in told
-        assert words in told
+        assert how in told
