@@ -1,11 +1,13 @@
 """Heart: which rows count: finite, within any sensor's reach, and later than the last one kept.
 
-The same rule as a live intake's. Gaps stay gaps. A magnetometer that reads nothing leaves the row.
+The same rule as a live intake's. Gaps stay gaps. A magnetometer that reads nothing leaves the row. A device
+whose clock was set back goes on behind a gap: nothing is integrated across, and no row is lost by it.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 
@@ -18,19 +20,35 @@ REPEATED = "repeated time"
 BACKWARD = "time went backward"
 LEAPT = "a time far off"
 
+_MOST_NS = 2**62
 _LONGEST_NS = 2**53  # 104 days: beyond it ELAPSED_NS would not be exact
 _MOST = 1e6  # m/s², rad/s or µT; no sensor reads that, and its square would spoil every sum
 
 
-def clean(raw: RawFoot) -> Samples:
-    """The rows that count, and how many were dropped for which reason; ``InputError`` if none is left."""
+#: A clock that fell back is believed after so many stamps that follow each other, as live.
+FELL_BACK = 8
+
+
+class SetBack(NamedTuple):
+    """A clock that was set back: when, by the stamps as they are told on, and by how much."""
+
+    at_s: float  # since the first row
+    by_s: float
+
+
+def clean(raw: RawFoot) -> tuple[Samples, tuple[SetBack, ...]]:
+    """The rows that count, how many were dropped for which reason, and where the clock was set back.
+
+    ``InputError`` if no row is left.
+    """
     raw, lone = without_lone_leaps(raw)
+    raw, set_back = told_on(raw)
     rows, dropped = countable(raw)
     dropped = {LEAPT: lone} | dropped if lone else dropped
     if not len(rows):
         raise InputError(f"{raw.sensor}: none of {len(raw.stamps_ns)} rows is finite, expected samples")
     stamps_ns = raw.stamps_ns[rows]
-    return Samples(
+    samples = Samples(
         sensor=raw.sensor,
         role=role_of(raw.sensor),
         device_ns=int(stamps_ns[0]),
@@ -38,6 +56,43 @@ def clean(raw: RawFoot) -> Samples:
         saturation=np.zeros(len(rows), np.uint16),
         dropped=dropped,
     )
+    return samples, set_back
+
+
+def told_on(raw: RawFoot) -> tuple[RawFoot, tuple[SetBack, ...]]:
+    """With the stamps behind each set-back of the clock moved behind all before them.
+
+    Stamps that are merely late (fewer than ``FELL_BACK`` in a row) stay as they are.
+    """
+    at = np.flatnonzero(raw.stamps_ns != NO_STAMP)
+    if len(at) < FELL_BACK:
+        return raw, ()
+    stamps = raw.stamps_ns[at]
+    added = np.zeros(len(at), np.int64)
+    found, begin, passed_ns, latest_ns = [], 0, 0, int(stamps[0])
+    for fall in _falls(stamps).tolist():
+        latest_ns = max(latest_ns, int(stamps[begin:fall].max()))
+        begin, by_ns = fall, latest_ns - int(stamps[fall])
+        if stamps[fall + FELL_BACK - 1] <= latest_ns and passed_ns + by_ns < _MOST_NS:
+            found.append(SetBack((latest_ns + passed_ns - int(stamps[0])) * 1e-9, by_ns * 1e-9))
+            added[fall] = by_ns + GAP_NS + 1
+            passed_ns, latest_ns = passed_ns + by_ns + GAP_NS + 1, int(stamps[fall])
+    if not found:
+        return raw, ()
+    shift = np.cumsum(added)
+    within = np.abs(stamps.astype(np.float64) + shift) < _MOST_NS
+    told = raw.stamps_ns.copy()
+    told[at] = np.where(within, stamps + shift, NO_STAMP)
+    return replace(raw, stamps_ns=told), tuple(found)
+
+
+def _falls(stamps: Ints) -> Ints:
+    """Where a stamp is not later than the one before, and the next ones follow it closely."""
+    steps = np.diff(stamps)
+    near = np.concatenate([[0], np.cumsum((steps > 0) & (steps <= GAP_NS))])
+    run = FELL_BACK - 1
+    follow = near[run:] - near[:-run] == run  # from each stamp the next ``run`` steps
+    return np.flatnonzero(follow[1:] & (steps[: len(follow) - 1] <= 0)) + 1
 
 
 def without_lone_leaps(raw: RawFoot) -> tuple[RawFoot, int]:

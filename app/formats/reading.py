@@ -24,6 +24,9 @@ EXPECTED = (
     "expected plain CSV, x-io, MicroStrain or gaitmap CSV, a PyShoe MATLAB file or a recording of Stridescope"
 )
 
+#: So many set-backs of a clock are told one by one.
+MOST_SAID = 3
+
 _NO_READINGS = ("", "t", "time", "timestamp", "index", "sample", "packet", "foot", "sensor")
 _FOREIGN = {
     b"PK\x03\x04": "an Excel workbook or zip archive",
@@ -42,9 +45,13 @@ def read(name: str, data: bytes, options: Options | None = None) -> Recording:
     if mcap.recognises(data):
         return _ours(kept.read(name, data), told)
     parsed = _pick(name, _timed(_parse(name, data, told.rate_hz), told.rate_hz), told.foot)
-    cleaned = [_clean(name, foot) for foot in parsed.feet]
+    cleaned, set_back = [], []
+    for foot in parsed.feet:
+        rows, said = _clean(name, foot)
+        cleaned.append(rows)
+        set_back += said
     full_scale = RANGES[told.device or parsed.device or "csv"]
-    sensors, sentences = [], list(parsed.assumed)
+    sensors, sentences = [], [*parsed.assumed, *set_back]
     for samples in cleaned:
         rest = find_rest(samples)
         check_units(name, samples, rest, parsed.force_unit)
@@ -146,11 +153,18 @@ def _pick(name: str, parsed: Parsed, foot: str | None) -> Parsed:
     return replace(parsed, feet=(chosen,))
 
 
-def _clean(name: str, foot: RawFoot) -> Samples:
+def _clean(name: str, foot: RawFoot) -> tuple[Samples, list[str]]:
+    """Its rows that count, and in words where its clock was set back."""
     try:
-        return clean(foot)
+        samples, set_back = clean(foot)
     except InputError as error:
         raise InputError(f"{name}: {error}") from None
+    said = [
+        f"{foot.sensor}: its clock was set back {back.by_s:.2f} s at {back.at_s:.2f} s: a new segment there"
+        for back in set_back[:MOST_SAID]
+    ]
+    more = len(set_back) - len(said)
+    return samples, [*said, f"{foot.sensor}: its clock was set back {more} more times"] if more else said
 
 
 def _turned(samples: Samples, axes: Axes, full_scale: Range) -> Samples:

@@ -118,7 +118,7 @@ class LslSource(Inbox):
         except self._pylsl.LostError:
             return
         host_ns = time.monotonic_ns()
-        made = (reader.read(round(t * 1e9), row, host_ns) for row, t in zip(rows, stamps, strict=True))
+        made = (reader.read(t, row, host_ns) for row, t in zip(rows, stamps, strict=True))
         self.put([sample for sample in made if sample is not None])
 
 

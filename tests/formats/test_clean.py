@@ -5,9 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.formats.clean import BACKWARD, LEAPT, NOT_FINITE, REPEATED, clean, countable
+from app.formats.clean import BACKWARD, LEAPT, NOT_FINITE, REPEATED, clean, countable, told_on
 from app.formats.raw import NO_STAMP, RawFoot
 from app.motion.basics import InputError
+from app.motion.samples import GAP_NS
 
 STAMPS = st.lists(
     st.one_of(st.integers(-50, 50), st.sampled_from([NO_STAMP, 2**62, -(2**62), 2**53])),
@@ -51,7 +52,7 @@ def test_the_same_rows_as_the_live_rule(stamps: list[int], data: st.DataObject) 
 @given(STAMPS)
 def test_cleaned_stamps_increase_and_every_row_is_counted(stamps: list[int]) -> None:
     try:
-        samples = clean(raw(stamps))
+        samples = clean(raw(stamps))[0]
     except InputError:
         assert all(s == NO_STAMP for s in stamps) or len(stamps) > 2
         return
@@ -63,27 +64,65 @@ def test_cleaned_stamps_increase_and_every_row_is_counted(stamps: list[int]) -> 
 def test_a_lone_wild_stamp_costs_its_own_row_only(at: int) -> None:
     stamps = [i * 10_000_000 for i in range(100)]
     wild = [*stamps[:at], stamps[at] + 10**15, *stamps[at + 1 :]]
-    samples = clean(raw(wild))
+    samples, _ = clean(raw(wild))
     assert samples.dropped == {LEAPT: 1}
     assert (samples.device_ns + samples.matrix[:, 0]).tolist() == stamps[:at] + stamps[at + 1 :]
 
 
 def test_a_clock_that_was_really_set_ahead_keeps_every_row() -> None:
     stamps = [i * 10_000_000 + (10**12 if i > 50 else 0) for i in range(100)]
-    assert len(clean(raw(stamps))) == 100
+    assert len(clean(raw(stamps))[0]) == 100
 
 
 def test_each_reason_is_counted() -> None:
-    samples = clean(raw([0, 10, 10, 5, 20, NO_STAMP, 30], [-9.8, -9.8, -9.8, -9.8, math.nan, -9.8, -9.8]))
+    samples, _ = clean(raw([0, 10, 10, 5, 20, NO_STAMP, 30], [-9.8, -9.8, -9.8, -9.8, math.nan, -9.8, -9.8]))
     assert samples.matrix[:, 0].tolist() == [0, 10, 30]
     assert samples.dropped == {REPEATED: 1, BACKWARD: 1, NOT_FINITE: 2}
 
 
 def test_a_gap_stays_a_gap() -> None:
-    assert clean(raw([0, 10**10])).matrix[:, 0].tolist() == [0, 1e10]
+    assert clean(raw([0, 10**10]))[0].matrix[:, 0].tolist() == [0, 1e10]
 
 
 def test_a_field_that_is_not_finite_is_no_field() -> None:
-    samples = clean(raw([0, 1, 2], field=[40.0, math.nan, math.inf]))
+    samples, _ = clean(raw([0, 1, 2], field=[40.0, math.nan, math.inf]))
     assert len(samples) == 3
     assert np.isfinite(samples.matrix[:, 7:]).tolist() == [[True] * 3, [False] * 3, [False] * 3]
+
+
+@pytest.mark.parametrize("back_ns", [80_000_000, 10**9, 10**12, 1_700_000_000 * 10**9])
+@pytest.mark.parametrize("at", [8, 50, 92])
+def test_behind_a_clock_that_was_set_back_every_row_counts(back_ns: int, at: int) -> None:
+    start = 1_700_000_000 * 10**9
+    stamps = [start + i * 10_000_000 - (back_ns if i >= at else 0) for i in range(100)]
+    samples, (set_back,) = clean(raw(stamps))
+    steps = np.diff(samples.matrix[:, 0])
+    assert len(samples) == 100
+    assert samples.dropped == {}
+    assert np.flatnonzero(steps != 10_000_000).tolist() == [at - 1]
+    assert steps[at - 1] == GAP_NS + 1  # a segment of its own
+    assert set_back == pytest.approx(((at - 1) * 0.01, back_ns * 1e-9 - 0.01))
+
+
+def test_set_back_time_and_again() -> None:
+    stamps = [i % 20 * 10_000_000 for i in range(200)]
+    samples, set_back = clean(raw(stamps))
+    assert (len(samples), len(set_back)) == (200, 9)
+    assert (np.diff(samples.matrix[:, 0]) > 0).all()
+    assert [back.by_s for back in set_back] == pytest.approx([0.19] * 9)
+
+
+@pytest.mark.parametrize("late", [1, 3, 7])
+def test_rows_that_are_merely_late_stay_late(late: int) -> None:
+    even = [i * 10_000_000 for i in range(100)]
+    stamps = [*even[:40], *even[50:60], *even[40 : 40 + late], *even[60:]]
+    samples, set_back = clean(raw(stamps))
+    assert set_back == ()
+    assert samples.dropped == {BACKWARD: late}
+
+
+@given(STAMPS)
+def test_a_set_back_never_costs_a_row_that_counted(stamps: list[int]) -> None:
+    rows, _ = countable(raw(stamps))
+    told, _ = told_on(raw(stamps))
+    assert len(countable(told)[0]) >= len(rows)

@@ -31,7 +31,7 @@ def samples_of(draw: st.DrawFn, sensor: str) -> Samples:
 
 def decoded(data: bytes) -> dict[str, Samples]:
     parsed = parse("x.csv", data, read_head(data))
-    return {raw.sensor: clean(raw) for raw in parsed.feet}
+    return {raw.sensor: clean(raw)[0] for raw in parsed.feet}
 
 
 @given(samples_of("left"), samples_of("right"))

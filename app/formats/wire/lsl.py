@@ -13,12 +13,16 @@ from app.formats.mounting import AS_GIVEN, Axes
 from app.formats.saturation import Range
 from app.formats.wire.columns import UNITS, find_columns, spelt
 from app.formats.wire.making import Z_UP, Maker, scaled
+from app.formats.wire.ticks import DeviceClock
 from app.motion.basics import Vector
 from app.motion.samples import Sample
 
 TYPE = "IMU"
 #: What our own streams say of their axes, so that they are not turned a second time.
 SHOE_AXES = "toe,right,down"
+
+#: Stamps are told in whole nanoseconds below this; no machine has been on for 146 years.
+_CLOCK_BITS = 62
 
 _CELL = {"ACC": ("acc", "m/s^2"), "GYRO": ("gyr", "rad/s"), "MAGN": ("mag", "uT")}
 _ASSUMED = {"force": "m/s^2", "rate": "rad/s", "field": "ut"}
@@ -54,7 +58,7 @@ class StreamReader:
         self.notes: list[str] = []
         self.rejected = 0
         self._columns = find_columns([channel.label for channel in channels])
-        self._last_ns = -1
+        self._clock = DeviceClock(1, _CLOCK_BITS)
         if axes is None:
             axes = AS_GIVEN if axes_told == SHOE_AXES else Z_UP
             if axes_told != SHOE_AXES:
@@ -82,13 +86,18 @@ class StreamReader:
         """Whether samples can be made of it."""
         return self._columns is not None
 
-    def read(self, stamp_ns: int, numbers: Sequence[float], host_ns: int) -> Sample | None:
-        """One row; None where it is not finite or its stamp does not increase."""
+    def read(self, stamp_s: float, numbers: Sequence[float], host_ns: int) -> Sample | None:
+        """One row; None where it is not finite, or where its stamp does not follow those before it.
+
+        A lone wild stamp costs its own row; a clock that was really set anew goes on behind a gap.
+        """
         columns = self._columns
-        if columns is None or len(numbers) < columns.count or stamp_ns <= self._last_ns:
+        stamp_ns = None
+        if columns is not None and len(numbers) >= columns.count and 0.0 <= stamp_s * 1e9 < 2**_CLOCK_BITS:
+            stamp_ns = self._clock.stamp(round(stamp_s * 1e9), host_ns)
+        if columns is None or stamp_ns is None:
             self.rejected += 1
             return None
-        self._last_ns = stamp_ns
         force = scaled(_three(numbers, columns.force), self._factors["force"])
         rate = scaled(_three(numbers, columns.rate), self._factors["rate"])
         field = None
