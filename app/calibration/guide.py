@@ -16,7 +16,10 @@ from app.motion.basics import Floats
 from app.motion.samples import GAP_NS, Sample
 from app.motion.status import GuideView
 
-HOLD_S = 1.5
+#: A pose is held until its mean is known so well (0.2 mg: the poses together tell the null to 0.3 mg), but no
+#: shorter and no longer than this.
+DOUBT_MPS2 = 0.002
+HOLD_S, MOST_HOLD_S = 1.5, 3.5
 #: The axis may lean so far and still be called down: the table need not be level to a degree.
 UPRIGHT = math.cos(math.radians(25.0))
 #: Of a whole round, so much must be made.
@@ -129,7 +132,7 @@ class Guide:
             if abs(self._angle[step.axis]) > 0.5:
                 turned = math.degrees(abs(self._angle[step.axis]))
                 self._said = f"Turned {turned:.0f}° about {'xyz'[step.axis]}: all the way round, please."
-        elif pose.seconds >= HOLD_S:
+        elif held(pose) >= 1.0:
             self._finish(step, pose)
 
     def _finish(self, step: Step, pose: Pose) -> None:
@@ -154,16 +157,16 @@ class Guide:
         """The step under way and how far it is."""
         number = len(self.legs)
         step = self._steps[min(number, len(self._steps) - 1)]
-        held = 0.0
+        part = 0.0
         if self._pose is not None and not self._said and self._right(step, self._pose):
-            held = min(self._pose.seconds / HOLD_S, 1.0)
+            part = held(self._pose)
         return GuideView(
             sensor=self.sensor,
             step=number,
             steps=len(self._steps),
             words="Done." if self.done else step.words,
             picture=step.picture,
-            held=1.0 if self.done else held,
+            held=1.0 if self.done else part,
             note=self._said or self._broken(),
             coverage=coverage(np.array(self._fields)) if len(self._fields) > 3 else 0.0,
             directions=_directions(self._fields),
@@ -249,6 +252,12 @@ class Guide:
         lowest = np.array([about_y[1][0], *about_x[1][1:]])
         length = field_ut or float(np.mean(highest - lowest) / 2.0)
         return correction(report.null(highest, lowest), report.scale(highest, lowest, length))
+
+
+def held(pose: Pose) -> float:
+    """How much of the time that a pose needs has passed, 0 to 1: a noisy or slow sensor needs longer."""
+    known = (DOUBT_MPS2 / max(pose.doubt_mps2, 1e-9)) ** 2  # the standard error falls with the root of time
+    return min(max(min(pose.seconds / HOLD_S, known), pose.seconds / MOST_HOLD_S), 1.0)
 
 
 # --- coverage ------------------------------------------------------------------------------------

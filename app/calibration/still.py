@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import NamedTuple
 
 from app.motion.basics import Vector
@@ -23,6 +24,7 @@ class Pose(NamedTuple):
     field: Vector | None  # µT
     seconds: float
     samples: int
+    doubt_mps2: float  # standard error of the force's noisiest axis
 
     @property
     def down(self) -> tuple[int, int]:
@@ -47,6 +49,8 @@ class Stillness:
 
     def _clear(self) -> None:
         self._sums, self._count, self._fields = [0.0] * 9, 0, 0
+        self._first = [0.0] * 3  # of the force; its spread is told from there
+        self._off, self._squares = [0.0] * 3, [0.0] * 3
 
     def add(self, sample: Sample) -> Pose | None:
         """The still time so far, without its first moments; None while it moves."""
@@ -59,8 +63,14 @@ class Stillness:
         elif not self._settled and sample.device_ns - self._begin_ns >= SETTLE_NS:
             self._clear()
             self._begin_ns, self._settled = sample.device_ns, True
+        if not self._count:
+            self._first = list(sample.specific_force_b)
         for i, value in enumerate(readings):
             self._sums[i] += value
+        for i, first in enumerate(self._first):
+            off = readings[i] - first
+            self._off[i] += off
+            self._squares[i] += off * off
         self._count += 1
         self._fields += sample.field_b is not None
         return self._pose() if self._settled else None
@@ -79,4 +89,10 @@ class Stillness:
             (m[0], m[1], m[2]) if self._fields == self._count else None,
             (self._last_ns - self._begin_ns) * 1e-9,
             self._count,
+            self._doubt(),
         )
+
+    def _doubt(self) -> float:
+        n = self._count
+        spread = max(square - off * off / n for square, off in zip(self._squares, self._off, strict=True))
+        return math.sqrt(max(spread, 0.0) / max(n - 1, 1) / n)

@@ -37,7 +37,7 @@ class CalibrationOptions:
     seed: float = 0.0
     rate_hz: float = 100.0
     first_s: float = 20.0  # flat at the beginning: a port is found meanwhile, and somebody presses Start
-    still_s: float = 3.0
+    still_s: float = 4.0
     turn_s: float = 1.5
     noise: float = 1.0  # in multiples of Table II of the 2012 paper
     sloppy_deg: float = 0.0  # how badly the turns are made

@@ -8,8 +8,9 @@ from functools import cache
 import numpy as np
 import pytest
 
-from app.calibration.guide import Guide, coverage
+from app.calibration.guide import Guide, coverage, held
 from app.calibration.steps import FIELD_STEPS, STEPS
+from app.calibration.still import Pose, Stillness
 from app.calibration.words import Calibration, Correction
 from app.motion.samples import Sample
 from app.simulate.calibration import Calibrating, Errors, make_calibration
@@ -24,7 +25,7 @@ SCALE = 0.002
 
 @cache
 def made(seed: int, **options: str) -> tuple[Calibrating, list[Sample]]:
-    simulated = make_calibration({"seed": str(seed), "first": "3", **options})
+    simulated = make_calibration({"seed": str(seed), "first": "6", **options})
     timeline = Timeline(simulated.recording)
     return simulated, timeline.cut(0, len(timeline), 0)
 
@@ -71,6 +72,26 @@ def test_fits_bear_turns_that_are_made_badly_where_the_formulas_do_not(seed: int
     assert wrong[0] < wrong[1]
 
 
+def still(noise_mps2: float, seconds: float, rate_hz: float = 100.0) -> Pose:
+    """What is known of a sensor that lies still for so long."""
+    random, stillness, pose = np.random.default_rng(1), Stillness(), None
+    for i in range(round(seconds * rate_hz)):
+        x, y, z = random.normal(0.0, noise_mps2, 3)
+        sample = Sample("a", i, round(i * 1e9 / rate_hz) + 1, 0, (x, y, z - G), (0.0, 0.0, 0.0))
+        pose = stillness.add(sample)
+    assert pose is not None
+    return pose
+
+
+def test_a_pose_is_held_until_its_mean_is_known() -> None:
+    pose = still(0.033, 3.3)
+    assert pose.doubt_mps2 == pytest.approx(0.033 / np.sqrt(pose.samples), rel=0.15)
+    assert held(still(0.0, 1.7)) < 1.0 <= held(still(0.0, 1.9))  # 0.3 s go by first
+    assert held(still(0.033, 1.9)) < 1.0 <= held(still(0.033, 3.7))
+    assert held(still(0.08, 3.5)) < 1.0 <= held(still(0.08, 3.9))  # nobody holds still for ever
+    assert held(still(0.033, 1.9, 400.0)) == 1.0
+
+
 @pytest.mark.parametrize("rate", ["50", "400"])
 def test_any_rate_will_do(rate: str) -> None:
     true, samples = made(5, rate=rate)
@@ -79,13 +100,13 @@ def test_any_rate_will_do(rate: str) -> None:
 
 
 def test_corrected_samples_are_the_truth() -> None:
-    """A calibration of what was corrected finds nothing more to correct."""
+    """A calibration of what was corrected finds nothing more to correct, but that poses end a little apart."""
     _, samples = made(3)
     fit, _ = led(samples).results("now", field_ut=48.6)
     again, _ = led([fit.apply(sample) for sample in samples]).results("later", field_ut=48.6)
     for kind, null in NULLS.items():
         np.testing.assert_allclose(getattr(again, kind).null, 0.0, atol=0.2 * null)
-        np.testing.assert_allclose(np.diag(getattr(again, kind).scale), 1.0, atol=0.1 * SCALE)
+        np.testing.assert_allclose(np.diag(getattr(again, kind).scale), 1.0, atol=0.2 * SCALE)
 
 
 def test_without_a_magnetometer_it_is_shorter() -> None:

@@ -16,7 +16,7 @@ from tests.scene.pages import PATIENCE_MS, open_page
 from tests.shell.test_run import Program
 
 #: Eight times as fast as a hand, and around again for a page that finds the Start button late.
-HAND = "speed=8&first=40&still=2.2&turn=1&loop=1"
+HAND = "speed=8&first=40&still=4&turn=1&loop=1"
 
 
 @contextmanager
