@@ -100,7 +100,7 @@ def test_any_rate_will_do(rate: str) -> None:
 
 
 def test_corrected_samples_are_the_truth() -> None:
-    """A calibration of what was corrected finds nothing more to correct, but that poses end a little apart."""
+    """A calibration of what was corrected finds nothing more to correct; its poses end a little apart."""
     _, samples = made(3)
     fit, _ = led(samples).results("now", field_ut=48.6)
     again, _ = led([fit.apply(sample) for sample in samples]).results("later", field_ut=48.6)
