@@ -1,7 +1,8 @@
 """Heart: a gyro at the end of its range: what it reads is no belief, and what it missed is guessed.
 
 Gyros are sold for 500, 1000, 2000 °/s (8.7, 17.5, 35 rad/s) and read at most some per cent more. The
-range is taken as 500 °/s until a rate well beyond it was read, unless a person says it.
+range is taken as 500 °/s until a rate well beyond it was read, unless a person says it. Others end at
+250 or 300 °/s: that is a top that two samples in a row read alike, and nothing goes beyond.
 """
 
 from __future__ import annotations
@@ -15,6 +16,8 @@ from app.rotation import exponential, multiply, normalise, rotate
 FIRST_RANGE_RADPS = 8.727
 #: A rate of this share of the range is clipped; one this far beyond it shows a larger range.
 AT_RANGE, BEYOND = 0.965, 1.15
+#: A flat top between these, rad/s, is a range of 250 or 300 °/s.
+OLD_RANGES_RADPS = (4.2, 5.8)
 #: Rate that a clipped sample may have missed, rad/s (σ).
 MISSED_RADPS = 6.0
 #: A clipped run lasts at least so many samples to be mended; slopes and lost angle are capped.
@@ -23,11 +26,18 @@ MOST_SLOPE, MOST_ANGLE = 600.0, 0.3
 
 
 @kernel
-def gyro_range(state: KalmanState) -> float:
-    """The range by the rates read so far, rad/s."""
+def gyro_range(state: KalmanState, before: Vector) -> float:
+    """The range by the rates read so far, rad/s; ``before`` is the sample before."""
+    rates = (state.w0, state.w1, state.w2)
     state.top_radps = max(state.top_radps, max(abs(state.w0), max(abs(state.w1), abs(state.w2))))
     if state.gyro_range_radps > 0.0:
         return state.gyro_range_radps
+    if OLD_RANGES_RADPS[0] < state.top_radps < OLD_RANGES_RADPS[1]:
+        for axis in range(3):
+            if rates[axis] == before[axis] and abs(rates[axis]) == state.top_radps:
+                state.flat_radps = state.top_radps
+    if state.flat_radps > 0.0 and state.flat_radps == state.top_radps:
+        return state.flat_radps
     full = FIRST_RANGE_RADPS
     while state.top_radps > BEYOND * full:
         full *= 2.0
@@ -40,7 +50,7 @@ def mind_clipping(state: KalmanState, before: Vector, dt_s: float) -> None:
 
     ``before`` is the sample before, its bias still in it.
     """
-    limit = AT_RANGE * gyro_range(state)
+    limit = AT_RANGE * gyro_range(state, before)
     rates = (state.w0, state.w1, state.w2)
     for axis in range(3):
         rate, clipped_n = rates[axis], state.clip[axis, 0]

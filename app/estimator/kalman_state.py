@@ -114,6 +114,7 @@ class KalmanState(Parameters, Window):
     quiet_ns: float  # the last zero velocity
     sure_ns: float  # the last that needed no confirmation
     top_radps: float  # the largest rate read
+    flat_radps: float  # … where two in a row read it alike, in a range of 250 or 300 °/s; 0: nowhere
     gained_x: float  # velocity gained from the specific force since the segment began
     gained_y: float
     gained_z: float

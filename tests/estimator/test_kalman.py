@@ -130,6 +130,19 @@ def test_a_loud_stance_is_found_where_the_foot_has_no_speed() -> None:
     assert estimate(loud, KALMAN).stride_count == 20
 
 
+def test_a_gyro_that_ends_at_300_degrees_is_known_by_its_flat_tops() -> None:
+    """What it lost in a swing is no bias: that would grow to 0.06 rad/s, and the walk 50 m long the wrong way."""
+    query = "rate_hz=50&strides=40&path=oval&cadence=115&lift_m=0.22&stride_m=1.35"
+    clipped, whole = foot(f"{query}&gyro_range_dps=300"), foot(query)
+    assert np.abs(whole.matrix[:, 4:7]).max() > 1.3 * np.abs(clipped.matrix[:, 4:7]).max()
+    found = estimate(clipped, KALMAN)
+    assert np.abs(found.state["gyro_bias"]).max() < 1e-3
+    away = rows_of(found)[:, :2] - rows_of(estimate(whole, KALMAN))[:, :2]
+    assert np.hypot(*away.T).max() < 3.0
+    assert found.state["flat_radps"][0] == pytest.approx(np.radians(300.0))
+    assert estimate(whole, KALMAN).state["flat_radps"][0] == 0.0
+
+
 def test_a_clipped_gyro_is_doubted_about_its_own_axis_and_mended() -> None:
     t_s = np.arange(400) / 200
     swing = np.where((t_s > 1.0) & (t_s < 1.2), 12.0 * np.sin(np.pi * (t_s - 1.0) / 0.2), 0.0)
