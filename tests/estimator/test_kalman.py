@@ -131,7 +131,7 @@ def test_a_loud_stance_is_found_where_the_foot_has_no_speed() -> None:
 
 
 def test_a_gyro_that_ends_at_300_degrees_is_known_by_its_flat_tops() -> None:
-    """What it lost in a swing is no bias: that would grow to 0.06 rad/s, and the walk 50 m long the wrong way."""
+    """What it lost in a swing is no bias: that grew to 0.06 rad/s, and the walk went 50 m astray."""
     query = "rate_hz=50&strides=40&path=oval&cadence=115&lift_m=0.22&stride_m=1.35"
     clipped, whole = foot(f"{query}&gyro_range_dps=300"), foot(query)
     assert np.abs(whole.matrix[:, 4:7]).max() > 1.3 * np.abs(clipped.matrix[:, 4:7]).max()
