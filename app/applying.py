@@ -210,6 +210,8 @@ class Applying:
     def _want(self, asked: Asked, settings: Settings, apply: bool, reason: str) -> None:
         coming = self._coming
         if settings == self.main.settings and (apply or coming is None):
+            if coming is not None and reason != "undo" and self._pass_over():
+                self.undo.append(coming.settings)
             self.wanted, self._next, self.candidate = None, None, None
             return
         job = self._job(asked, settings, apply, reason)
@@ -223,11 +225,13 @@ class Applying:
         (number, order), before = asked, (self._coming or self.main).settings
         return Reestimation(0, settings, {}, {}, apply, order.who, reason, order.host_ns, number, before)
 
-    def _pass_over(self) -> None:
+    def _pass_over(self) -> bool:
         """An apply that the next one overtakes has happened all the same: an undo goes back to it."""
         coming = self._coming
-        if coming is not None and coming.reason != "undo" and not coming.look_back:
-            self.undo.append(coming.before)
+        if coming is None or coming.reason == "undo" or coming.look_back:
+            return False
+        self.undo.append(coming.before)
+        return True
 
     def _fresh(self, job: Reestimation) -> Reestimation:
         """The same job, for the samples that are here now."""

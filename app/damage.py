@@ -43,6 +43,13 @@ class Damage:
         _, fed, skipped, bad = (b - a for a, b in zip(seen[0], now, strict=True))
         return min(skipped / fed, 1.0) if bad >= LEAST_PACKETS and fed > 0 else 0.0
 
+    def told(self, feet: Mapping[Role, Counters], now_s: float) -> str:
+        """Which foot's line damages packets now, in words; empty where none does."""
+        shares = {role: self.share(role.value, counters, now_s) for role, counters in feet.items()}
+        worst = max(shares, key=lambda role: shares[role], default=Role.OTHER)
+        share = shares.get(worst, 0.0)
+        return _words(worst, share) if light_of(share, DAMAGED) is not None else ""
+
     def seen(self, snapshot: Snapshot, counters: Mapping[str, Counters], now_s: float) -> Snapshot:
         """With what the line does to each sensor's health, where that is the worse or explains it."""
         if not counters:
@@ -62,5 +69,9 @@ def _with(told: Health, role: Role, share: float) -> Health:
     light = light_of(share, DAMAGED)
     if light is None or _WORST.index(light) < _WORST.index(told.light):
         return told
+    return told._replace(light=light, reason=_words(role, share))
+
+
+def _words(role: Role, share: float) -> str:
     words = f"{100.0 * share:.2g} % of packets damaged in the last 10 s: check cable, plug and baud rate"
-    return told._replace(light=light, reason=f"{FEET[role]}: {words}")
+    return f"{FEET[role]}: {words}"

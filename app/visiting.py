@@ -79,6 +79,7 @@ class Visiting:
         self.decision = standing(0, "")
         self.guide: SetUpGuide | None = None
         self.message = ""
+        self.trouble = ""  # of the sensors' lines, which keeps nobody from walking
         self.visitors: tuple[str, ...] = ()
         self.halted = False
         self._keys, self._keyed_ns = "", -STROLL_NS
@@ -286,7 +287,8 @@ class Visiting:
             eye_m=self._eye_m(),
             speed_mps=math.hypot(w.ahead_mps, w.right_mps), turn_radps=w.turn_radps, motion=d.motion,
             certain=d.certain, confidence=d.confidence, cadence_hz=d.cadence_hz, reason=d.reason,
-            feet=hearing.lights(now_ns), fault=fault, message=self.message or hearing.intake.note(),
+            feet=hearing.lights(now_ns), fault=fault,
+            message=self.message or self.trouble or hearing.intake.note(),
             halted=self.halted, touching=w.touching,
             goal=hunts.goal(self.hunt, w.north, w.east, w.heading_rad), score=self.hunt.found,
             targets=len(self.hunt.order), hunt_s=self.hunt.seconds, best_s=self.hunt.best_s,

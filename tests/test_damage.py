@@ -64,3 +64,16 @@ def test_a_bad_cable_is_said_of_its_foot(spoilt: int, light: Light) -> None:
     assert health.reason.startswith("left foot:") == bool(spoilt)
     assert ("packets damaged" in health.reason) == bool(spoilt)
     assert told.main.feet[0].role is Role.LEFT
+
+
+def test_it_says_which_foot_of_two_it_is() -> None:
+    watch, sound, bad = Damage(), Counters(), Counters()
+    for i in range(11):
+        for counters, rate in ((sound, 0.0), (bad, 0.2)):
+            counters.bytes_fed += 3100
+            counters.bytes_skipped += round(3100 * rate)
+            counters.bad_checksum += round(100 * rate)
+        told = watch.told({Role.LEFT: sound, Role.RIGHT: bad}, float(i))
+    assert told.startswith("right foot: 20 % of packets damaged")
+    assert not Damage().told({}, 0.0)
+    assert not Damage().told({Role.LEFT: sound}, 0.0)

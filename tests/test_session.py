@@ -139,6 +139,21 @@ def test_a_and_b_swap() -> None:
     assert session.snapshot().slot_now is None
 
 
+def test_a_swap_back_overtakes_an_apply_and_both_can_be_undone() -> None:
+    session = fed(Session(PAPERS), WALK[:500])
+    tell(session, KeepAs("A"), SetCandidate((("gain_stance", 3.0),)), ApplyCandidate(), KeepAs("B"), SwapAB())
+    depth = session.snapshot().undo_depth
+    session.apply(order(SwapAB()))  # to B, which takes a while …
+    session.apply(order(SwapAB()))  # … and back to A before it is there
+    settle(session)
+    assert session.main.settings.gain_stance == 1.05
+    assert session.snapshot().undo_depth == depth + 2
+    tell(session, Undo())
+    assert session.main.settings.gain_stance == 3.0
+    tell(session, Undo())
+    assert session.main.settings.gain_stance == 1.05
+
+
 def test_every_apply_is_logged_with_who_what_and_when() -> None:
     session = fed(Session(PAPERS), WALK[:100])
     session.apply(Order(GAIN, "browser 2", 11))

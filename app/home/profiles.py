@@ -64,6 +64,8 @@ def read(path: Path) -> Settings:
 
 def save(name: str, settings: Settings) -> Path:
     """Save settings under a name; a name that is not a plain file name is ``InputError``."""
+    if not name:
+        raise InputError("no profile name: type one first, then save")
     if not NAME.fullmatch(name):
         raise InputError(f"profile name {name!r}: expected {NAMES}")
     if name in BUILT_IN:

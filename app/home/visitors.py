@@ -22,6 +22,8 @@ def folder() -> Path:
 
 def place(name: str) -> Path:
     """The file of a visitor; a name that is not a plain file name is ``InputError``."""
+    if not name:
+        raise InputError("no visitor's name: type one first, then save")
     if not NAME.fullmatch(name):
         raise InputError(f"visitor {name!r}: expected {NAMES}")
     return folder() / f"{name}.toml"

@@ -23,8 +23,9 @@ POINTS = 200
 SPAN_S = 10.0
 HEIGHT_PX = 138
 THRESHOLD: Rgb = (222, 90, 80)
-RATE = "|ω|, rad/s (dashed Ω_th, shaded swing)"
-STATISTIC = "0.1·√T, rad/s (dashed threshold, shaded swing)"
+#: Short enough to be read over the first of four graphs.
+RATE = "|ω|, rad/s  ▒ swing  ┄ Ω_th"
+STATISTIC = "0.1·√T, rad/s  ▒ swing  ┄ limit"
 #: Which graphs there are.
 WALK, TRUE_WALK, PENDULUM = ("speed", "height"), ("speed", "height", "error"), ("tilt", "tilt error")
 NAMES = {Role.LEFT: "left", Role.RIGHT: "right", Role.FOOT: "", Role.OTHER: "sensor"}

@@ -30,6 +30,7 @@ from app.visit import (
 WIDTH_PX = 340
 DECODERS = ("default", "papers")
 STOP, GO, NEXT, GUIDE, LEAVE = "Stop", "Go on", "Next visitor", "Set up", "Leave set-up"
+SAVE = "Save visitor"
 _NOBODY = "–"
 KEYS = (
     ("↑ ↓ ← →", "steer simulated feet; Shift with ← →: aside"), ("Esc", "stop"), ("Space", "go on"),
@@ -54,6 +55,7 @@ class MoverPanel:
         self._figures = controls.html()
         self._sliders: dict[str, Input] = {}
         self._switches: dict[str, Input] = {}
+        self._visitor = ""  # the name typed so far
         self._more(controls)
 
     def _more(self, controls: Controls) -> None:
@@ -71,7 +73,8 @@ class MoverPanel:
                     step=0.01, initial_value=knob.default, hint=knob.sentence,
                 )  # fmt: skip
         with gui.add_folder("Visitors", expand_by_default=False):
-            self._name = controls.text("Save as", _save, "Keeps this visitor's thresholds.", 40)
+            controls.text("Name", self._typed, "Under which this visitor's thresholds are kept.", 40)
+            controls.choice("", {SAVE: self._save})
             self._who = controls.dropdown("Load", (_NOBODY,), _load, "Thresholds kept before.")
         with gui.add_folder("Keys", expand_by_default=False):
             rows = "".join(f"<tr><th><kbd>{key}</kbd></th><td>{what}</td></tr>" for key, what in KEYS)
@@ -83,6 +86,12 @@ class MoverPanel:
             "escape": (self.buttons.id, STOP), " ": (self.buttons.id, GO), "n": (self.buttons.id, NEXT),
             "u": (self.guide.id, GUIDE),
         }  # fmt: skip
+
+    def _typed(self, name: str) -> None:
+        self._visitor = name.strip()
+
+    def _save(self) -> Command:
+        return SaveVisitor(self._visitor)
 
     def show_hud(self, data: str) -> None:
         """What our own script reads."""
@@ -103,12 +112,13 @@ class MoverPanel:
 
 
 def header(visit: Visit) -> str:
-    """Where the feet come from, and the one line why nothing moves."""
+    """Where the feet come from, why nothing moves, and what else there is to say."""
     where = f'<span class="ss-source">{words.plain(visit.feet_from, 60)}</span>'
     badge = '<span class="ss-link ss-lost">STOPPED</span>' if visit.halted else _badge(visit)
-    why = visit.fault or visit.message or visit.reason
-    bad = " ss-bad" if visit.fault or visit.halted else ""
-    said = f'<div class="ss-message{bad}">{words.plain(why)}</div>' if why else ""
+    why = visit.fault or ("" if visit.message else visit.reason)
+    lines = [(why, visit.fault or visit.halted), (visit.message, False)]
+    said = "".join(f'<div class="ss-message{" ss-bad" if bad else ""}">{words.plain(line)}</div>'
+                   for line, bad in lines if line)  # fmt: skip
     return f'<div class="ss-head">{where}{badge}</div>{said}'
 
 
@@ -146,10 +156,6 @@ def _steer(text: str) -> Command | None:
 
 def _switch(name: str, on: bool) -> Command:
     return Switch(name, on)
-
-
-def _save(name: str) -> Command | None:
-    return SaveVisitor(name) if name else None
 
 
 def _load(name: str) -> Command | None:

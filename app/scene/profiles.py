@@ -30,5 +30,5 @@ class Profiles:
     def _load(self, name: str) -> Command | None:
         return None if name == CHOOSE else LoadProfile(name)
 
-    def _save(self) -> Command | None:
-        return SaveProfile(self._name) if self._name else None
+    def _save(self) -> Command:
+        return SaveProfile(self._name)

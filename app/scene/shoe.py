@@ -21,6 +21,8 @@ from app.scene.glb import Part, glb, joined
 ASSET = Path(__file__).resolve().parents[2] / "assets" / "shoe.npz"
 #: The sensor's height above the floor while the shoe stands flat (tools/make_shoe.py).
 SENSOR_HEIGHT_M = 0.112
+#: Of points so close along the sole only the outermost is on its edge.
+NEAR_M = 0.005
 #: How much of a ghost is there.
 SHEER = 0.32
 
@@ -147,7 +149,7 @@ class Shoe:
 def sole(mirrored: bool) -> Mesh:
     """The print of the sole: a flat fan, in the shoe's x and y, around the sensor."""
     x, y = parts(mirrored)["outsole"][0][:, :2].astype(np.float64).T
-    at = 0.5 * (x.min() + x.max()) - 0.5 * (x.max() - x.min()) * np.cos(np.linspace(0.12, np.pi - 0.12, 12))
+    at = 0.5 * (x.min() + x.max()) - 0.5 * (x.max() - x.min()) * np.cos(np.linspace(0.1, np.pi - 0.1, 13))
     right, left = (_edge(x, y * side, at) * side for side in (1.0, -1.0))
     edge = np.concatenate([np.stack([at, right], axis=1), np.stack([at, left], axis=1)[::-1]])
     centre = edge.mean(axis=0)
@@ -158,7 +160,8 @@ def sole(mirrored: bool) -> Mesh:
 
 
 def _edge(x: NDArray[np.float64], y: NDArray[np.float64], at: NDArray[np.float64]) -> NDArray[np.float64]:
-    """How far to the right the points reach at each of ``at``."""
-    outer = [int(np.argmax(np.where(np.abs(x - a) < 0.014, y, -np.inf))) for a in at]
-    order = np.argsort(x[outer])
-    return np.interp(at, x[outer][order], y[outer][order])
+    """How far to the right the outline reaches at each of ``at``."""
+    near = np.abs(x[:, None] - x) < NEAR_M
+    outer = np.flatnonzero(y >= np.where(near, y, -np.inf).max(axis=1))
+    order = outer[np.argsort(x[outer])]
+    return np.interp(at, x[order], y[order])

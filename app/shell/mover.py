@@ -13,8 +13,10 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from app.clocks import Clock, LiveClock
+from app.damage import Damage
 from app.door.access import Access
 from app.door.front import Door
+from app.formats.wire.stream import Counters
 from app.gestures.packet import packet_of
 from app.gestures.steering import Comfort
 from app.gestures.words import standing
@@ -87,6 +89,10 @@ class Feed:
         sample = self._corrections.apply(sample)
         return sample if self.side is None else sample._replace(sensor=self.side)
 
+    def counters(self) -> dict[str, Counters]:
+        """What the line did to each sensor's packets, under its side's name."""
+        return {self.side or sensor: kept for sensor, kept in self.source.counters.items()}
+
 
 def live_options(options: Options) -> GestureOptions | None:
     """Simulated feet that are steered, where no script is given; None for any other source."""
@@ -144,6 +150,7 @@ class Mover:
         )  # fmt: skip
         self._senders = self._open_senders()
         self._desk = Desk()
+        self._damage = Damage()
         self._news = asyncio.Event()  # the feet, or a person, ask for something else
         self._moved = asyncio.Event()  # a place has just left
         self._well_again_s = 0.0
@@ -280,6 +287,8 @@ class Mover:
     def _tell(self, scene: MoverScene) -> None:
         if self._message_until and time.monotonic() > self._message_until:
             self._say("")
+        feet = {self._role(name): kept for feed in self._feeds for name, kept in feed.counters().items()}
+        self._visiting.trouble = self._damage.told(feet, time.monotonic())
         self._visit = self._visiting.look(time.monotonic_ns())
         scene.tell(self._visit)
 

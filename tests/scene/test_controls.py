@@ -144,11 +144,11 @@ def test_profiles(scene: Scene, orders: list[Order]) -> None:
     with client(scene.port) as browser:
         browser.write(load, "papers")
         until(lambda: orders)
-        browser.write(control(scene, "Save profile"), "Save profile")  # no name yet: nothing
+        browser.write(control(scene, "Save profile"), "Save profile")  # no name yet: it will be told so
         browser.write(control(scene, "Save as"), " corridor ")
         browser.write(control(scene, "Save profile"), "Save profile")
-        until(lambda: len(orders) == 2)
-    assert [o.command for o in orders] == [LoadProfile("papers"), SaveProfile("corridor")]
+        until(lambda: len(orders) == 3)
+    assert [o.command for o in orders] == [LoadProfile("papers"), SaveProfile(""), SaveProfile("corridor")]
 
 
 @pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e300, -1.0])
