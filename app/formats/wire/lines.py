@@ -1,7 +1,8 @@
 """Heart: text lines as hobby boards print them: columns by header, ``name:value`` pairs, or JSON.
 
 Lines have no checksum (but ``$…*hh`` has), so a line is believed only when the end of the line before
-it was seen: the rest of a line joined in the middle could pass for a row. Units come from the header or
+it was seen: the rest of a line joined in the middle could pass for a row; and only with the decimals that
+the board always prints (``decimals``). Units come from the header or
 from the user; force and time are otherwise told by the numbers, the rate's unit never can be at rest and is
 then assumed to be deg/s. Until they are settled, rows are kept and given late.
 Axes: taken as z up, x ahead: say axes= otherwise.
@@ -27,6 +28,7 @@ from app.formats.wire.cells import (
     unwrapped,
 )
 from app.formats.wire.columns import UNITS, Columns, find_columns, is_unit, spelt
+from app.formats.wire.decimals import Decimals
 from app.formats.wire.making import NED, Z_UP, Maker, Taker, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
@@ -102,6 +104,7 @@ class LinesDecoder:
         self._arrival = ArrivalClock(rate_hz)
         self._whole = False  # the clock counts whole milli- or microseconds
         self._count: int | None = None
+        self._decimals = Decimals()
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes; a datagram of lines is such data."""
@@ -134,7 +137,7 @@ class LinesDecoder:
                 cells = cells[:-1]
             header = find_columns(cells) if not names and are_words(cells) else None
             if header is not None:
-                self._columns, self._units = header, {}
+                self._columns, self._units, self._decimals = header, {}, Decimals()
                 return None
             if not follows or not checked.isascii():
                 self.counters.dropped += 1
@@ -146,6 +149,9 @@ class LinesDecoder:
                 self._note(
                     "no header seen yet: reset the board so that it prints its header, or give columns="
                 )
+            return None
+        if not self._decimals.hold(cells):
+            self.counters.dropped += 1
             return None
         return columns, cells, host_ns
 

@@ -20,6 +20,8 @@ Z_UP: Axes = ((0, 1), (1, -1), (2, -1))  # a board with z up and x ahead
 RAD_PER_DEG = math.pi / 180.0
 #: More no inertial sensor reads (200 g, 7000 °/s): a digit or a bit was damaged where no checksum tells.
 MOST_MPS2, MOST_RADPS = 2000.0, 120.0
+#: Less no sensor reads but nothing at all (g, deg/s): single precision leaves more of any difference.
+LEAST = 1e-9
 _NEAR_RANGE = 0.98  # flagged from here on, as in recordings
 _HALF = math.sqrt(0.5)
 
@@ -32,6 +34,17 @@ ENU: Quaternion = (0.0, _HALF, _HALF, 0.0)
 def _possible(v: Vector, most: float) -> bool:
     """Finite and within ±``most``."""
     return -most <= v[0] <= most and -most <= v[1] <= most and -most <= v[2] <= most
+
+
+def measurable(v: Vector) -> bool:
+    """Whether a sensor can have read this, g or deg/s; a float whose exponent was damaged may be far less."""
+    return all(x == 0.0 or abs(x) >= LEAST for x in v)
+
+
+def measured(v: Vector) -> Vector:
+    """What of v, g or deg/s, a sensor would read: no remainders of somebody's arithmetic."""
+    x, y, z = v
+    return (x if abs(x) >= LEAST else 0.0, y if abs(y) >= LEAST else 0.0, z if abs(z) >= LEAST else 0.0)
 
 
 def scaled(v: Vector, factor: float) -> Vector:

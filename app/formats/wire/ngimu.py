@@ -11,7 +11,17 @@ import struct
 from app.formats.mounting import Axes
 from app.formats.saturation import RANGES
 from app.formats.units import G_MPS2
-from app.formats.wire.making import NWU, RAD_PER_DEG, Z_UP, Maker, Taker, in_g, scaled
+from app.formats.wire.making import (
+    NWU,
+    RAD_PER_DEG,
+    Z_UP,
+    Maker,
+    Taker,
+    in_g,
+    measurable,
+    measured,
+    scaled,
+)
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
 from app.motion.basics import Quaternion
@@ -164,6 +174,8 @@ class NgimuDecoder:
     def _read(self, tag: int, numbers: tuple[float, ...], host_ns: int) -> Sample | None:
         gx, gy, gz, ax, ay, az, mx, my, mz = numbers[:9]
         q, self._orientation = self._orientation, None
+        if not (measurable((gx, gy, gz)) and measurable((ax, ay, az))):
+            return None
         device_ns = self._stamp(tag, host_ns)
         if device_ns is None:
             return None
@@ -220,7 +232,7 @@ class NgimuEncoder:
         """One datagram, or one SLIP frame; the barometer reads 1013.25 hPa."""
         taker = self._taker
         rate, force = scaled(taker.rate(sample), 1 / RAD_PER_DEG), in_g(taker.force(sample))
-        messages = [message(SENSORS, (*rate, *force, *taker.field(sample), 1013.25))]
+        messages = [message(SENSORS, (*measured(rate), *measured(force), *taker.field(sample), 1013.25))]
         if sample.device_q_nb is not None:
             messages.insert(0, message(QUATERNION, taker.orientation(sample)))
         packet = bundle(time_tag(sample.device_ns), *messages)

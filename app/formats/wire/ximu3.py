@@ -15,7 +15,17 @@ import struct
 from app.formats.mounting import Axes
 from app.formats.saturation import RANGES
 from app.formats.units import G_MPS2
-from app.formats.wire.making import NWU, RAD_PER_DEG, Z_UP, Maker, Taker, in_g, scaled
+from app.formats.wire.making import (
+    NWU,
+    RAD_PER_DEG,
+    Z_UP,
+    Maker,
+    Taker,
+    in_g,
+    measurable,
+    measured,
+    scaled,
+)
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import DeviceClock
 from app.motion.basics import Quaternion
@@ -144,6 +154,8 @@ class Ximu3Decoder:
         most = RANGES["ximu3"]
         if not (_plausible(force, most.force) and _plausible(rate, most.rate)):
             return None
+        if not (measurable((gx, gy, gz)) and measurable((ax, ay, az))):
+            return None
         device_ns = self._clock.stamp(micros, host_ns)
         if device_ns is None:
             return None
@@ -173,7 +185,8 @@ class Ximu3Encoder:
     def inertial(self, sample: Sample) -> bytes:
         """Gyroscope in deg/s, accelerometer in g."""
         rate = scaled(self._taker.rate(sample), 1 / RAD_PER_DEG)
-        return self._message("I", _micros(sample), (*rate, *in_g(self._taker.force(sample))))
+        force = in_g(self._taker.force(sample))
+        return self._message("I", _micros(sample), (*measured(rate), *measured(force)))
 
     def field(self, sample: Sample) -> bytes:
         """Magnetometer, relative."""
