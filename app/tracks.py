@@ -224,7 +224,10 @@ class Track:
 
     def link(self, worn: Callable[[], Mapping[str, Worn]]) -> None:
         """Hold two feet together where there is a new stride; ``worn`` is asked only then."""
-        if self.linking.is_due([foot.tracker for foot in self.feet.values()]):
+        if len(self.feet) != 2:
+            return
+        one, other = self.feet.values()
+        if self.linking.is_due(one.tracker, other.tracker):
             self.linking.look({sensor: foot.tracker for sensor, foot in self.feet.items()}, worn())
 
     @property

@@ -30,14 +30,15 @@ class Linking:
 
     def __init__(self, settings: Settings, earlier: Steps | None = None) -> None:
         """``earlier``: strides by sensor before the first that its tracker tells."""
-        self._on = settings.estimator == "kalman" and settings.feet_apart_m > 0.0
+        self.on = settings.estimator == "kalman" and settings.feet_apart_m > 0.0
         self._settings = settings
         self._earlier = earlier or {}
         self._together = Together(settings.feet_apart_m, settings.start_heading_rad)
         self._names: tuple[str, ...] = ()  # left, right
         self._taken = [0, 0]  # strides
         self._seen = -1  # strides of both at the last look
-        self._waits = False
+        self._late: Tracker | None = None  # the foot whose samples a stride of the other waits for …
+        self._late_ns = 0.0  # … up to this, from its first
 
     @property
     def linked(self) -> bool:
@@ -58,15 +59,16 @@ class Linking:
         """How a sensor's walk is turned."""
         return self._together.turns[self._names.index(sensor)] if sensor in self._names else ALONE
 
-    def is_due(self, trackers: Sequence[Tracker]) -> bool:
+    def is_due(self, one: Tracker, other: Tracker) -> bool:
         """Whether there is anything to look at (cheap: it is asked for every sample)."""
-        if not self._on or len(trackers) != 2:
-            return False
-        return self._waits or len(trackers[0].steps) + len(trackers[1].steps) != self._seen
+        if len(one.steps) + len(other.steps) != self._seen:
+            return self.on
+        late = self._late
+        return late is not None and float(late.state["elapsed_ns"][0]) > self._late_ns
 
     def look(self, trackers: Mapping[str, Tracker], worn: Mapping[str, Worn]) -> None:
         """Take the strides that are surely the next ones."""
-        self._seen = sum(len(tracker.steps) for tracker in trackers.values())
+        self._seen, self._late = sum(len(tracker.steps) for tracker in trackers.values()), None
         sides = {worn[name].role: name for name in trackers if name in worn}
         if set(sides) != {Role.LEFT, Role.RIGHT}:
             return
@@ -80,9 +82,12 @@ class Linking:
                 step = self._next(side, tracker)
                 now_s = float(tracker.state["elapsed_ns"][0]) * 1e-9 - TOLD_S if step is None else step.end_s
                 coming.append((where.offset_s + where.pace * now_s, side, step))
-            _, side, step = min(coming, key=lambda one: one[0])
-            self._waits = any(step is not None for _, _, step in coming)
+            (_, side, step), (later_s, _, waiting) = sorted(coming, key=lambda one: one[0])
             if step is None:
+                if waiting is not None:
+                    tracker, where, _ = feet[side]
+                    self._late = tracker
+                    self._late_ns = ((later_s - where.offset_s) / where.pace + TOLD_S) * 1e9
                 return
             self._together.take(side, step)
             self._taken[side] += 1
@@ -139,7 +144,7 @@ def link_walked(trackers: Mapping[str, Tracker], worn: Mapping[str, Worn], setti
     Says whether they are linked.
     """
     linking = Linking(settings)
-    if linking.is_due(list(trackers.values())):
+    if linking.on and len(trackers) == 2:
         linking.look(trackers, worn)
     for sensor, tracker in trackers.items():
         turns = linking.turns(sensor)

@@ -9,7 +9,7 @@ import pytest
 
 from app.blocks import Blocks
 from app.estimator.feet import Worn
-from app.estimator.linking import Linking, link_walked
+from app.estimator.linking import link_walked
 from app.estimator.tracker import Tracker
 from app.estimator.turns import Turn, Turns
 from app.motion.basics import Floats, Role
@@ -246,4 +246,3 @@ def test_only_what_is_there_is_asked_for() -> None:
     assert len(asked) == 1  # no stride yet: once when the second foot came, never again
     track.link(lambda: asked.append(1) or WORN)
     assert len(asked) == 1
-    assert not Linking(DEFAULT).is_due([])
