@@ -13,6 +13,7 @@ from app.estimator.linking import link_walked
 from app.estimator.tracker import Tracker
 from app.estimator.turns import Turn, Turns
 from app.motion.basics import Floats, Role
+from app.motion.commands import ApplyCandidate, Command, LookBack, Order, ReplaceCandidate
 from app.motion.samples import Sample
 from app.session import Session
 from app.settings import Settings
@@ -204,6 +205,69 @@ def test_a_foot_that_was_lost_comes_back_to_the_other() -> None:
     assert np.hypot(*(last + BESIDE - rows[-1, :2])) < 1.3
     stranded = rows_of(right.tracker)[-1, :2]
     assert np.hypot(*(stranded + BESIDE - rows[-1, :2])) > 3.0
+
+
+def settle(session: Session) -> None:
+    while (job := session.applying.wanted) is not None:
+        session.applying.adopt(job, job.run())
+
+
+def told(session: Session, command: Command) -> None:
+    session.apply(Order(command, "somebody", 0))
+    settle(session)
+
+
+def drawn(session: Session) -> list[bytes]:
+    feet = [session.main.feet[name] for name in NAMES]
+    return [foot.table(foot.tracker.rows.start, foot.tracker.rows.end).tobytes() for foot in feet]
+
+
+def test_other_settings_are_linked_as_if_they_had_held_from_the_start() -> None:
+    given = orders(samples(SQUARE, 8e-3))[0]
+    session, fresh = Session(DEFAULT), Session(changed := DEFAULT.with_changes({"feet_apart_m": 0.8}))
+    for i, sample in enumerate(given):
+        session.take(sample)
+        fresh.take(sample)
+        if i == len(given) // 2:
+            told(session, ReplaceCandidate(changed, "tried"))
+            told(session, ApplyCandidate())
+    assert session.main.settings == changed
+    assert drawn(session) == drawn(fresh)
+
+
+def test_after_a_look_back_the_feet_stay_together() -> None:
+    session = Session(DEFAULT.with_changes({"hindsight": True}))
+    given = orders(samples(SQUARE, 8e-3))[0]
+    for i, sample in enumerate(given):
+        session.take(sample)
+        if i == len(given) // 2:
+            told(session, LookBack())
+            assert session.main.linked
+    rows = {name: session.main.feet[name].table(0, len(given) // 2) for name in NAMES}
+    assert session.main.linked
+    assert np.hypot(*apart(rows).T).max() < 1.5
+    lengths = [stride.length_m for stride in session.main.feet["left"].strides(1000)]
+    assert max(lengths) < 2.5
+
+
+def test_where_old_samples_are_gone_other_settings_go_on_from_where_the_feet_were() -> None:
+    query = "feet=2&rate_hz=100&path=square&size_m=15&strides=150"
+    session, whole = Session(DEFAULT, budget_bytes=6_000_000), Session(DEFAULT)
+    given = orders(samples(query, 3e-3))[0]
+    for i, sample in enumerate(given):
+        session.take(sample)
+        whole.take(sample)
+        if i == len(given) - 1000:
+            turned = DEFAULT.with_changes({"start_heading_rad": 0.7})
+            told(session, ReplaceCandidate(turned, "turned"))
+            told(session, ApplyCandidate())
+    c, s = np.cos(0.7), np.sin(0.7)
+    for name in NAMES:
+        foot, before = session.main.feet[name], whole.main.feet[name]
+        start, end = foot.tracker.rows.start, foot.tracker.rows.end
+        assert start > 0
+        found, true = (one.table(start, end)[:, :2] for one in (foot, before))
+        assert found == pytest.approx(true @ np.array([[c, s], [-s, c]]), abs=0.02)
 
 
 def test_strangers_are_not_called_linked() -> None:
