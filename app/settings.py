@@ -160,6 +160,25 @@ class Settings(Limited):
             only="kalman",
         ),
     )  # fmt: skip
+    same_floor_m: float = setting(
+        0.06,
+        Limit(
+            "Same floor within", "", "m",
+            "Footprints that differ in height by less are taken, softly, to be on one floor; stairs and ramps"
+            " stay free, slopes below about 3 % come out level; 0: never.",
+            0.0, 0.3, (0.0, 0.1), 0.005,
+            only="kalman",
+        ),
+    )  # fmt: skip
+    steady_north: bool = setting(
+        True,
+        Limit(
+            "Steady north", "", "",
+            "Hold the heading by the magnetometer at footprints where its field is as strong, as steep and"
+            " points as it did before; anywhere else by the gyro alone.",
+            only="kalman",
+        ),
+    )  # fmt: skip
     gyro_range_radps: float = setting(
         0.0,
         Limit(

@@ -191,7 +191,7 @@ class FootTrack:
             footprints=self.footprints(),
             error_m=None if true is None else error_m(true, tracker.rows, self.turns),
             trust=tracker.trust,
-            compass=tracker.compass.view,
+            compass=tracker.compass,
             toe=self.toe,
         )
 

@@ -8,8 +8,10 @@ from __future__ import annotations
 
 from app.compiled import kernel
 from app.estimator import state as s
+from app.estimator.floor import stand_on_floor
 from app.estimator.gait import STANCE, SWING
 from app.estimator.kalman_state import KalmanState
+from app.estimator.north import hold_heading
 
 #: A swing is corrected so long after its contact.
 SETTLED_NS = 100_000_000
@@ -39,6 +41,8 @@ def footfall(state: KalmanState, stood: bool) -> int:
     stood_ns = state.elapsed_ns - state.contact_ns
     if state.contact_row >= 0.0 and (stood_ns >= SETTLED_NS or not stood):
         if stood or stood_ns >= SHORTEST_STANCE_NS:
+            stand_on_floor(state)
+            hold_heading(state)
             happened = finish(state)
         else:
             state.contact_row = -1.0

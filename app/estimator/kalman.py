@@ -23,12 +23,15 @@ from app.estimator.detectors import (
     stands,
     window_statistic,
 )
+from app.estimator.floor import begin_floor
 from app.estimator.footfalls import end_footfalls, footfall, note_contact
 from app.estimator.gait import STANCE
 from app.estimator.kalman_state import (
     ATTITUDE_AT,
     FORCE_AT,
     GYRO_AT,
+    HEIGHT_AT,
+    PARTS,
     RING,
     RING_GAIN,
     RING_NS,
@@ -38,8 +41,10 @@ from app.estimator.kalman_state import (
     VELOCITY_AT,
     KalmanState,
 )
+from app.estimator.north import begin_look, forget_field, look_at_field
 from app.estimator.papers import Reading
 from app.estimator.standing import begin_bias, begin_window, find_level, keep_standing, learn_bias
+from app.estimator.taking import take_shift
 from app.motion.basics import Vector
 from app.rotation import exponential, from_yaw, multiply, normalise, rotate, yaw_of
 
@@ -49,6 +54,8 @@ FORCE_NOISE, RATE_NOISE = 0.05, 5e-4
 RATE_SHARE = 2e-4
 #: What happens between two samples is not seen: σ of a velocity as a share of the force's jump times Δt.
 JUMP_NOISE = 0.2
+#: A foot does not roll just as it is thought to: σ of its height for a turn (m·√s a rad/s: m/√s … of it).
+PIVOT_NOISE = 0.01
 #: How the biases wander: (m/s²)/√s and (rad/s)/√s.
 FORCE_WANDER, RATE_WANDER = 1e-4, 1e-6
 #: σ at the start: tilt and heading, rad, and the accelerometer's bias, m/s².
@@ -72,6 +79,8 @@ def step(state: KalmanState, reading: Reading) -> int:
     """One sample on. Returns what happened, a sum of the codes in ``state.py``. Time must go forward."""
     force_before, rate_before = (state.f0, state.f1, state.f2), (state.w0, state.w1, state.w2)
     happened, dt_s = receive(state, reading)
+    state.totals[:] = 0.0
+    state.floor_began, state.north_began = 0.0, 0.0
     place = remember(state)
     state.statistic_before = state.statistic
     state.statistic, rate2 = window_statistic(state)
@@ -86,14 +95,15 @@ def step(state: KalmanState, reading: Reading) -> int:
     if not happened & s.RESTING:
         predict(state, force_before, rate_before, dt_s)
         mind_clipping(state, rate_before, dt_s)
-        state.totals[0] = 0.0
         note_motion(state, place)
         answer = stands(state, energy, least, rate2, dt_s)
         stood = answer != MOVES and is_confirmed(state, answer)
         if stood:
             if note_contact(state):
                 doubt_swing(state)
+                begin_look(state)
             zero_velocity(state)
+            look_at_field(state, reading.field_b)
         happened |= footfall(state, stood)
         if state.standing != 0.0:
             keep_standing(state, energy, reading.field_b)
@@ -133,6 +143,7 @@ def begin_segment(state: KalmanState) -> None:
     state.vx, state.vy, state.vz = 0.0, 0.0, 0.0
     state.contrary_s = 0.0
     forget_gait(state)
+    forget_field(state)
     begin_window(state)
     for axis in range(3):
         state.clip[axis, 0] = 0.0
@@ -159,14 +170,15 @@ def begin_walk(state: KalmanState) -> None:
     state.gravity = state.gravity_mps2
     if state.gravity == 0.0:
         state.gravity = state.window_norm / state.window_n
-    for i in range(15):
-        for j in range(15):
+    for i in range(PARTS):
+        for j in range(PARTS):
             if i != j:
                 state.P[i, j] = 0.0
     for k in range(3):
         state.P[VELOCITY_AT + k, VELOCITY_AT + k] = STANCE_NOISE**2 + STATISTIC_NOISE**2 * restless
     for k in range(2):  # what disturbed the window leans on its mean force
         state.P[6 + k, 6 + k] = TILT_DOUBT**2 + 0.01 * restless / state.gravity**2
+    begin_floor(state)
     learn_bias(state)
     state.levelled, state.standing = 1.0, 1.0
     state.quiet_ns = state.elapsed_ns
@@ -206,6 +218,7 @@ def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, d
     add_variance(state.P, VELOCITY_AT, FORCE_NOISE**2 * dt_s + jump2 * (JUMP_NOISE * dt_s) ** 2)
     rate2 = state.w0 * state.w0 + state.w1 * state.w1 + state.w2 * state.w2
     add_variance(state.P, ATTITUDE_AT, (RATE_NOISE**2 + rate2 * RATE_SHARE**2) * dt_s)
+    state.P[HEIGHT_AT, HEIGHT_AT] += rate2 * PIVOT_NOISE**2 * dt_s
     add_variance(state.P, GYRO_AT, RATE_WANDER**2 * dt_s)
     add_variance(state.P, FORCE_AT, FORCE_WANDER**2 * dt_s)
 
@@ -275,33 +288,12 @@ def stance_variance(state: KalmanState) -> float:
 def zero_velocity(state: KalmanState) -> None:
     """The foot stood in the middle of the window: three scalar measurements of its velocity then."""
     variance = stance_variance(state)
-    for k in range(15):
-        state.shift[k] = 0.0
+    state.shift[:] = 0.0
     for k in range(3):
         state.totals[k], state.lefts[k] = measure(
-            state.P, state.shift, state.gains[k], VELOCITY_AT + k, state.aways[k], variance
+            state.P, state.shift, state.gains[k], VELOCITY_AT + k, -1, state.aways[k], variance
         )
     take_shift(state)
-
-
-@kernel
-def take_shift(state: KalmanState) -> None:
-    """What an update found goes into the estimate, and into the sums for the rows behind."""
-    d = state.shift
-    state.px, state.py, state.pz = state.px + d[0], state.py + d[1], state.pz + d[2]
-    state.vx, state.vy, state.vz = state.vx + d[3], state.vy + d[4], state.vz + d[5]
-    turn = exponential((d[6], d[7], d[8]))
-    q = (state.q0, state.q1, state.q2, state.q3)
-    state.q0, state.q1, state.q2, state.q3 = normalise(multiply(turn, q))
-    for k in range(3):
-        state.gyro_bias[k] += d[GYRO_AT + k]
-        state.force_bias[k] += d[FORCE_AT + k]
-    state.corrected_x, state.corrected_y = state.corrected_x + d[0], state.corrected_y + d[1]
-    state.corrected_z += d[2]
-    state.slowed_x, state.slowed_y = state.slowed_x + d[3], state.slowed_y + d[4]
-    state.slowed_z += d[5]
-    state.turned_x, state.turned_y = state.turned_x + d[6], state.turned_y + d[7]
-    state.turned_z += d[8]
 
 
 @kernel

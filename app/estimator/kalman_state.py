@@ -1,7 +1,8 @@
 """Heart: the flat state of the Kalman filter's step: one record, so that a copy is a checkpoint.
 
 As in ``state.py`` the classes only name the fields; here some are small arrays. The error state has
-15 parts in the order of ``P``: position, velocity, attitude (a turn in *n*), gyro bias, accelerometer bias.
+17 parts in the order of ``P``: position, velocity, attitude (a turn in *n*), gyro bias, accelerometer bias,
+the floor's height, and the direction of magnetic north.
 """
 
 from __future__ import annotations
@@ -11,6 +12,7 @@ from enum import IntEnum
 
 import numpy as np
 
+from app.estimator.compass import FOOTPRINTS, LOOK_WIDTH
 from app.estimator.state import Record, dtype_of
 from app.motion.basics import Floats
 from app.motion.samples import GyroBias
@@ -28,8 +30,10 @@ BIN_NS = 50_000_000
 #: σ by which a gyro's bias differs from what it was when the sensor was last switched on, rad/s.
 TURN_ON_RADPS = 1e-3
 #: Parts of the error state.
-PARTS = 15
-VELOCITY_AT, ATTITUDE_AT, GYRO_AT, FORCE_AT = 3, 6, 9, 12
+PARTS = 17
+HEIGHT_AT, VELOCITY_AT, ATTITUDE_AT, YAW_AT, GYRO_AT, FORCE_AT, FLOOR_AT, NORTH_AT = 2, 3, 6, 8, 9, 12, 15, 16
+#: Measurements of one step: three of a zero velocity, one of the floor's height, one of north.
+MEASURES, FLOOR_MEASURE, NORTH_MEASURE = 5, 3, 4
 
 
 class Detector(IntEnum):
@@ -50,6 +54,8 @@ class Parameters:
     threshold_radps: float
     min_duration_s: float
     sensor_height_m: float
+    same_floor_m: float
+    steady_north: float  # 0 or 1
     gyro_range_radps: float  # 0: found
     gravity_mps2: float  # 0: as read at rest
     bias_from_rest: float  # 0 or 1
@@ -166,7 +172,22 @@ class KalmanState(Parameters, Window):
     push_x: float
     push_y: float
     push_z: float
-    P: Floats  # [15, 15]
+    floor_z: float  # height of the floor the foot is on: where it first stood there
+    slope: float  # how the strides of late fell, beside the way they went
+    floor_began: float  # 1: the last step began a new floor
+    field_x: float  # the magnetic field in n, summed over the footprint under way
+    field_y: float
+    field_z: float
+    field_n: float
+    looks_n: float  # footprints whose field was seen in this segment
+    verdict: float  # on the field at the last of them, as in ``compass.py`` …
+    strays: float  # … and by how much it strays
+    north_known: float  # 1: north was taken, where the field was steady: …
+    north_began: float  # … (1: in the last step)
+    north_at_rad: float  # its direction in n, its strength and dip
+    north_strength: float
+    north_dip: float
+    P: Floats  # [17, 17]
     gyro_bias: Floats  # [3], rad/s
     force_bias: Floats  # [3], m/s²
     bias_info: Floats  # [3]: 1 / σ² of what still windows say of the gyro bias …
@@ -181,11 +202,12 @@ class KalmanState(Parameters, Window):
     fifth_squares: Floats
     fifth_white: Floats  # [3]: of the variances that independent samples would give those means
     clip: Floats  # [3, 3]: for each gyro axis: clipped samples in a row, slope on the way in, their seconds
-    gains: Floats  # [3, 15]: the column of P that each measurement of the last update saw,
-    totals: Floats  # [3]: its variance and P's (0: there was none),
-    lefts: Floats  # [3]: and how far it was away
+    gains: Floats  # [5, 17]: what each measurement of the last step saw of P,
+    totals: Floats  # [5]: its variance and P's (0: there was none),
+    lefts: Floats  # [5]: and how far it was away
     aways: Floats  # [3]: how far each part of the velocity was away before any
-    shift: Floats  # [15]: what an update found
+    looks: Floats  # [FOOTPRINTS, 5]: the field at the last footprints, and where that was
+    shift: Floats  # [17]: what an update found
 
 
 SHAPES: dict[str, tuple[int, ...]] = {
@@ -204,10 +226,11 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "fifth_rate2": (3,),
     "fifth_white": (3,),
     "clip": (3, 3),
-    "gains": (3, PARTS),
-    "totals": (3,),
-    "lefts": (3,),
+    "gains": (MEASURES, PARTS),
+    "totals": (MEASURES,),
+    "lefts": (MEASURES,),
     "aways": (3,),
+    "looks": (FOOTPRINTS, LOOK_WIDTH),
     "shift": (PARTS,),
 }
 KALMAN = np.dtype([(name, np.float64, SHAPES.get(name, ())) for name in dtype_of(KalmanState).names or ()])
@@ -215,7 +238,7 @@ KALMAN = np.dtype([(name, np.float64, SHAPES.get(name, ())) for name in dtype_of
 
 _VECTORS = (
     "p", "v", "gained_", "corrected_", "turned_", "from_", "at_", "before_", "unturned_", "slowed_", "start_",
-    "push_",
+    "push_", "field_",
 )  # fmt: skip
 
 
@@ -235,9 +258,10 @@ def new_state(settings: Settings, known: GyroBias | None = None) -> Record:
 def set_parameters(state: Record, settings: Settings) -> None:
     """Write the settings into a state."""
     state["detector"] = Detector[settings.detector.upper()]
-    state["magnetometer"] = settings.magnetometer
-    for name in ("gait_factor", "still_statistic", "threshold_radps", "min_duration_s", "sensor_height_m"):
+    state["magnetometer"], state["steady_north"] = settings.magnetometer, settings.steady_north
+    for name in ("gait_factor", "still_statistic", "threshold_radps", "min_duration_s"):
         state[name] = getattr(settings, name)
+    state["sensor_height_m"], state["same_floor_m"] = settings.sensor_height_m, settings.same_floor_m
     state["gyro_range_radps"] = settings.gyro_range_radps
     state["gravity_mps2"] = 0.0 if settings.gravity_from_rest else settings.gravity_mps2
     state["bias_from_rest"] = settings.bias_from_rest
@@ -266,6 +290,10 @@ def turn_about_down(state: np.void, angle_rad: float) -> None:
     for first in (RING_GAIN, RING_ROLL, RING_P, RING_Q):
         xy = state["ring"][:, first : first + 2]
         state["ring"][:, first : first + 2] = xy @ np.array([[c, s], [-s, c]])
+    for first in (0, 3):
+        xy = state["looks"][:, first : first + 2]
+        state["looks"][:, first : first + 2] = xy @ np.array([[c, s], [-s, c]])
+    state["north_at_rad"] += angle_rad
     c, s = math.cos(0.5 * angle_rad), math.sin(0.5 * angle_rad)
     w, x, y, z = (float(state[f"q{i}"]) for i in range(4))
     state["q0"], state["q1"], state["q2"], state["q3"] = (

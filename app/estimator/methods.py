@@ -10,10 +10,11 @@ import numpy as np
 
 from app.estimator import corrections, kalman_run, kalman_state, papers_run, resume, state
 from app.estimator.gait import SWING
+from app.estimator.north import compass_of
 from app.estimator.state import Record
 from app.estimator.trust import trust_of
 from app.motion.basics import Floats
-from app.motion.estimate import Trust
+from app.motion.estimate import Compass, Trust
 from app.motion.samples import GyroBias
 from app.rotation import yaw_of
 from app.settings import Settings
@@ -36,6 +37,7 @@ class Method(NamedTuple):
     moves: Callable[[Record], bool]  # whether rows since the lift may still change
     trust: Callable[[Record, float], Trust | None]  # how sure it is, after so many metres
     doubts: Callable[[Record], tuple[float, float]]  # as in ``strides.Step``
+    compass: Callable[[Record], Compass | None] | None  # what the method itself holds of the magnetic field
     events: int  # that a run may report before it pauses for them to be applied
 
 
@@ -74,6 +76,7 @@ METHODS: dict[str, Method] = {
         _papers_moves,
         _unknown,
         _papers_doubts,
+        None,
         events=64,
     ),
     "kalman": Method(  # its corrections read the state as the event left it: one event a run
@@ -84,6 +87,7 @@ METHODS: dict[str, Method] = {
         _kalman_moves,
         trust_of,
         _kalman_doubts,
+        compass_of,
         events=1,
     ),
 }

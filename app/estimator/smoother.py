@@ -1,7 +1,7 @@
 """Heart: the Kalman filter in hindsight: every row by all samples, those after it too.
 
 The adjoint form of the Rauch–Tung–Striebel smoother (G. J. Bierman, "Fixed interval smoothing with
-discrete measurements", Int. J. Control 18, 1973): one vector λ of 15 runs backward, x̂ = x − P λ, and no
+discrete measurements", Int. J. Control 18, 1973): one vector λ of 17 runs backward, x̂ = x − P λ, and no
 matrix is inverted. The filter is run twice more: once through, now that the gait on both sides of each
 sample is known, then block by block from the last to the first, so that memory does not grow with the walk.
 """
@@ -17,7 +17,18 @@ from app.estimator import state as s
 from app.estimator.corrections import EVENT_WIDTH
 from app.estimator.kalman import step
 from app.estimator.kalman_run import AS_RATE, turn_row, write_event
-from app.estimator.kalman_state import PARTS, KalmanState
+from app.estimator.kalman_state import (
+    FLOOR_AT,
+    FLOOR_MEASURE,
+    HEIGHT_AT,
+    MEASURES,
+    NORTH_AT,
+    NORTH_MEASURE,
+    PARTS,
+    VELOCITY_AT,
+    YAW_AT,
+    KalmanState,
+)
 from app.estimator.papers import reading_at
 from app.estimator.state import Record
 from app.estimator.tracker import Tracker
@@ -26,10 +37,10 @@ from app.motion.estimate import RowColumn
 from app.motion.samples import Column
 from app.rotation import conjugate, exponential, rotate
 
-#: Columns of a trace: what happened; Δt; q at the half step; force in n; for each of three measurements
-#: its total variance (0: none), how far it was away, and the column of P it saw.
-_DT, _HALF, _PUSH, _MEASURED, _EACH = 1, 2, 6, 9, 2 + PARTS
-TRACE_WIDTH = _MEASURED + 3 * _EACH
+#: Columns of a trace: what happened; Δt; q at the half step; force in n; whether a floor
+#: and a north began; for each measurement its total variance (0: none), how far it was away, and the column of P.
+_DT, _HALF, _PUSH, _FLOOR, _NORTH, _MEASURED, _EACH = 1, 2, 6, 9, 10, 11, 2 + PARTS
+TRACE_WIDTH = _MEASURED + MEASURES * _EACH
 #: The gait around a sample: as long as the causal detector looks back, half of it to either side.
 ENERGY_S, LEAST_S = 1.5, 1.2
 
@@ -47,7 +58,7 @@ def forward(
     """Run the filter over a block [k, 10]; rows as it made them, before any correction of a swing.
 
     ``gait`` [k, 2] is the energy and the least statistic around each sample; ``trace`` [k, TRACE_WIDTH]
-    and ``covariances`` [k, 15, 15] are what ``backward`` reads. Returns the count of strides, told in
+    and ``covariances`` [k, 17, 17] are what ``backward`` reads. Returns the count of strides, told in
     ``events``.
     """
     now = state[0]
@@ -82,17 +93,17 @@ def write_trace(trace: Floats, now: KalmanState, happened: int) -> None:
         now.half3,
     )
     trace[_PUSH], trace[_PUSH + 1], trace[_PUSH + 2] = now.push_x, now.push_y, now.push_z
-    stood = now.totals[0] > 0.0
-    for k in range(3):
+    trace[_FLOOR], trace[_NORTH] = now.floor_began, now.north_began
+    for k in range(MEASURES):
         at = _MEASURED + k * _EACH
-        trace[at], trace[at + 1] = (now.totals[k] if stood else 0.0), now.lefts[k]
-        for j in range(PARTS):
+        trace[at], trace[at + 1] = now.totals[k], now.lefts[k]
+        for j in range(PARTS if now.totals[k] > 0.0 else 0):
             trace[at + 2 + j] = now.gains[k, j]
 
 
 @kernel
 def backward(adjoint: Floats, rows: Floats, trace: Floats, covariances: Floats) -> None:
-    """Smooth the rows of a block, last to first; ``adjoint`` [15] is λ behind its last row, and changes."""
+    """Smooth the rows of a block, last to first; ``adjoint`` [17] is λ behind its last row, and changes."""
     shift = np.empty(9)
     for i in range(rows.shape[0] - 1, -1, -1):
         for k in range(9):
@@ -107,14 +118,25 @@ def backward(adjoint: Floats, rows: Floats, trace: Floats, covariances: Floats) 
             continue
         if trace[i, 0] == 1.0:
             adjoint[9:12] = 0.0
+        unmeasure(adjoint, measured(trace[i], NORTH_MEASURE), YAW_AT, NORTH_AT)
+        uncopy(adjoint, trace[i, _NORTH], YAW_AT, NORTH_AT)
+        unmeasure(adjoint, measured(trace[i], FLOOR_MEASURE), HEIGHT_AT, FLOOR_AT)
+        uncopy(adjoint, trace[i, _FLOOR], HEIGHT_AT, FLOOR_AT)
         for k in range(2, -1, -1):
-            unmeasure(adjoint, trace[i, _MEASURED + k * _EACH : _MEASURED + (k + 1) * _EACH], 3 + k)
+            unmeasure(adjoint, measured(trace[i], k), VELOCITY_AT + k, -1)
         unpredict(adjoint, trace[i])
 
 
 @kernel
-def unmeasure(adjoint: Floats, measured: Floats, part: int) -> None:
-    """λ ← λ − h (Kᵀλ + y/S) for one scalar measurement of one part."""
+def measured(trace: Floats, which: int) -> Floats:
+    """The columns of one measurement."""
+    at = _MEASURED + which * _EACH
+    return trace[at : at + _EACH]
+
+
+@kernel
+def unmeasure(adjoint: Floats, measured: Floats, part: int, less: int) -> None:
+    """λ ← λ − h (Kᵀλ + y/S) for one scalar measurement of one part, or of how two differ."""
     total, left = measured[0], measured[1]
     if total == 0.0:
         return
@@ -122,6 +144,16 @@ def unmeasure(adjoint: Floats, measured: Floats, part: int) -> None:
     for j in range(PARTS):
         seen += measured[2 + j] * adjoint[j]
     adjoint[part] -= seen / total
+    if less >= 0:
+        adjoint[less] += seen / total
+
+
+@kernel
+def uncopy(adjoint: Floats, began: float, part: int, into: int) -> None:
+    """λ ← Cᵀ λ, where ``into`` became a copy of ``part``, if it did."""
+    if began != 0.0:
+        adjoint[part] += adjoint[into]
+        adjoint[into] = 0.0
 
 
 @kernel

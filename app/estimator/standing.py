@@ -13,7 +13,7 @@ import math
 
 from app.compiled import kernel
 from app.estimator.detectors import WALKING
-from app.estimator.kalman_state import GYRO_AT, KalmanState
+from app.estimator.kalman_state import GYRO_AT, PARTS, KalmanState
 from app.estimator.state import LEVEL_FOUND, RESTING
 from app.motion.basics import Vector
 
@@ -143,6 +143,6 @@ def learn_bias(state: KalmanState) -> None:
 def doubt_bias(state: KalmanState, axis: int, info: float) -> None:
     """The bias' doubt into P, free of what it had to do with other errors."""
     part = GYRO_AT + axis
-    for j in range(15):
+    for j in range(PARTS):
         state.P[part, j], state.P[j, part] = 0.0, 0.0
     state.P[part, part] = min(1.0 / info, MOST_DOUBT_RADPS**2)

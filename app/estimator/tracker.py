@@ -14,7 +14,7 @@ from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
 from app.estimator.strides import Contact, Step, lift_above_line, step_of, stride_to, turned
 from app.motion.basics import Floats
-from app.motion.estimate import ROW_WIDTH, Stride, Trust
+from app.motion.estimate import ROW_WIDTH, Compass, Stride, Trust
 from app.motion.samples import SAMPLE_WIDTH, GyroBias, Samples
 from app.rotation import yaw_of
 from app.settings import Settings
@@ -63,7 +63,7 @@ class Tracker:
         self.distance_m = self._base.distance_m
         self.segments: list[int] = []  # rows where a segment begins, but for the first
         self._gap_s = 0.0  # without samples since the last stride
-        self.compass = CompassWatch()
+        self._watch = CompassWatch()
         self.checkpoints: dict[int, Checkpoint] = {}  # before each block's first row
         self._events = np.zeros((self.method.events, EVENT_WIDTH))
 
@@ -76,6 +76,11 @@ class Tracker:
     def trust(self) -> Trust | None:
         """How sure the estimator is of where the foot is; None where it cannot know."""
         return self.method.trust(self.state, self.distance_m)
+
+    @property
+    def compass(self) -> Compass | None:
+        """Whether the magnetic field could be believed at the last footprints; None where that is open."""
+        return self._watch.view if self.method.compass is None else self.method.compass(self.state)
 
     @property
     def contact(self) -> Contact | None:
@@ -133,12 +138,13 @@ class Tracker:
                 self.method.correct(rows, number, piece[place : place + len(rows)], event, self.state)
         if happened & s.STRIDE:
             self._add_stride(event)
-            self._look_at_field(samples, int(event[Event.CONTACT_ROW]), last)
+            if self.method.compass is None:
+                self._look_at_field(samples, int(event[Event.CONTACT_ROW]), last)
         if happened & s.SEGMENT:
             self.segments.append(last - 1)
             self._gap_s += self._since_before(samples, last - 1)
             self._contact = None
-            self.compass.forget()
+            self._watch.forget()
 
     def _since_before(self, samples: Blocks, row: int) -> float:
         """Seconds from the row before to this one."""
@@ -151,7 +157,7 @@ class Tracker:
         """The magnetic field while the foot stood, as far as these rows are in one block."""
         *_, (rows, number) = self.rows.pieces(max(first, last - STANCE_ROWS, self.rows.start), last)
         piece, place = samples.block(number)
-        self.compass.add(piece[place : place + len(rows)], rows)
+        self._watch.add(piece[place : place + len(rows)], rows)
 
     def _add_stride(self, event: Floats) -> None:
         lift = max(int(event[Event.LIFT_ROW]), self.rows.start)

@@ -73,6 +73,7 @@ class Compass(NamedTuple):
 
     steady: bool
     why: str  # empty where it is steady
+    holds: bool = False  # the heading is held by it
 
 
 class Toe(NamedTuple):

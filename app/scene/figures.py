@@ -131,7 +131,9 @@ def compass(foot: FootView) -> str:
     """Whether a magnetometer could be believed at the last footprints, and why not."""
     if foot.compass is None:
         return ""
-    word = "steady" if foot.compass.steady else f"not to be trusted: {words.plain(foot.compass.why)}"
+    word = f"not to be trusted: {words.plain(foot.compass.why)}; the gyro alone holds the heading"
+    if foot.compass.steady:
+        word = "steady: it holds the heading" if foot.compass.holds else "steady"
     return f'<div class="ss-note">Magnetic field {word}.</div>'
 
 

@@ -52,10 +52,10 @@ def test_what_strays_is_named(field: np.ndarray, why: str) -> None:
 
 def test_a_walk_in_the_earths_field_is_steady_on_any_course_and_one_past_a_magnet_is_not() -> None:
     for query in ("strides=12&noise=1", "path=eight&strides=16"):
-        view = estimate(foot(query), KALMAN).compass.view
+        view = estimate(foot(query), KALMAN).compass
         assert view is not None
         assert view.steady, query
-    beside = estimate(foot("strides=16&iron_gauss_m3=0.5&iron_along=0.8"), KALMAN).compass.view
+    beside = estimate(foot("strides=16&iron_gauss_m3=0.5&iron_along=0.8"), KALMAN).compass
     assert beside is not None
     assert "strength" in beside.why
 
@@ -64,6 +64,6 @@ def test_without_a_field_or_a_way_nothing_is_said() -> None:
     walked = foot("strides=12").matrix.copy()
     walked[:, Column.MX :] = np.nan
     blind = samples_of(walked[:, 0] * 1e-9, walked[:, 1:4], walked[:, 4:7])
-    assert estimate(blind, KALMAN).compass.view is None
+    assert estimate(blind, KALMAN).compass is None
     few = foot("strides=4")
-    assert estimate(Samples("foot", few.role, 0, few.matrix, few.saturation), KALMAN).compass.view is None
+    assert estimate(Samples("foot", few.role, 0, few.matrix, few.saturation), KALMAN).compass is None
