@@ -38,7 +38,7 @@ from app.motion.samples import Column
 from app.rotation import conjugate, exponential, rotate
 
 #: Columns of a trace: what happened; Δt; q at the half step; force in n; whether a floor
-#: and a north began; for each measurement its total variance (0: none), how far it was away, and the column of P.
+#: and a north began; for each measurement its total variance (0: none), how far away it was, what it saw.
 _DT, _HALF, _PUSH, _FLOOR, _NORTH, _MEASURED, _EACH = 1, 2, 6, 9, 10, 11, 2 + PARTS
 TRACE_WIDTH = _MEASURED + MEASURES * _EACH
 #: The gait around a sample: as long as the causal detector looks back, half of it to either side.

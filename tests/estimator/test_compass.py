@@ -7,13 +7,22 @@ import math
 import numpy as np
 import pytest
 
-from app.estimator.compass import FOOTPRINTS, judged
+from app.estimator.compass import FOOTPRINTS, judge, told
+from app.motion.estimate import Compass
 from app.motion.samples import Column, Samples
 from app.settings import Settings
 from tests.estimator.walks import estimate, foot, samples_of
 
 KALMAN = Settings(estimator="kalman")
 EARTH = np.array([20.0, 0.0, 40.0])
+
+
+def judged(field_n: np.ndarray) -> Compass:
+    """Footprints with these fields in *n*, along a way that is long enough."""
+    places = np.column_stack([np.linspace(0.0, 9.0, FOOTPRINTS), np.zeros(FOOTPRINTS)])
+    view = told(*judge(np.hstack([field_n, places])))
+    assert view is not None
+    return view
 
 
 def test_the_earths_field_is_steady_whatever_its_strength_and_direction() -> None:
@@ -41,7 +50,7 @@ def turned(about: int, angles: np.ndarray) -> np.ndarray:
         (turned(1, np.linspace(-0.1, 0.1, FOOTPRINTS)), "dip"),
         (turned(2, np.linspace(-0.2, 0.2, FOOTPRINTS)), "direction"),
         (turned(2, np.linspace(0.0, 2 * math.pi, FOOTPRINTS + 1)[:-1]), "direction"),
-        (np.zeros((FOOTPRINTS, 3)), "direction"),
+        (np.zeros((FOOTPRINTS, 3)), "strength"),
     ],
 )
 def test_what_strays_is_named(field: np.ndarray, why: str) -> None:
