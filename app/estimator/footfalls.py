@@ -6,6 +6,8 @@ the foot has stood for a tenth of a second, or lifts again.
 
 from __future__ import annotations
 
+import math
+
 from app.compiled import kernel
 from app.estimator import state as s
 from app.estimator.floor import stand_on_floor
@@ -17,6 +19,10 @@ from app.estimator.north import hold_heading
 SETTLED_NS = 100_000_000
 #: A zero velocity shorter than this in mid-swing is no contact; a swing shorter than this no stride.
 SHORTEST_STANCE_NS, SHORTEST_SWING_NS = 15_000_000, 150_000_000
+#: … unless the foot was at rest there by its own account, m/s: the stances of a run are short.
+AT_REST_MPS = 0.5
+#: Nobody sets the same foot down twice within this: sprinters take 0.4 s. A foot that settles does.
+SHORTEST_STRIDE_NS = 330_000_000
 
 
 @kernel
@@ -25,6 +31,7 @@ def note_contact(state: KalmanState) -> bool:
     if state.moving == 0.0 or state.contact_row >= 0.0:
         return False
     state.contact_row, state.contact_ns = state.row, state.elapsed_ns
+    state.contact_mps = math.sqrt(state.aways[0] ** 2 + state.aways[1] ** 2 + state.aways[2] ** 2)
     state.before_x, state.before_y, state.before_z = state.corrected_x, state.corrected_y, state.corrected_z
     state.at_x = state.px - state.corrected_x
     state.at_y = state.py - state.corrected_y
@@ -40,7 +47,7 @@ def footfall(state: KalmanState, stood: bool) -> int:
     happened = 0
     stood_ns = state.elapsed_ns - state.contact_ns
     if state.contact_row >= 0.0 and (stood_ns >= SETTLED_NS or not stood):
-        if stood or stood_ns >= SHORTEST_STANCE_NS:
+        if stood or stood_ns >= SHORTEST_STANCE_NS or state.contact_mps < AT_REST_MPS:
             stand_on_floor(state)
             hold_heading(state)
             happened = finish(state)
@@ -60,6 +67,7 @@ def footfall(state: KalmanState, stood: bool) -> int:
 @kernel
 def finish(state: KalmanState) -> int:
     """The swing under way ended at its contact: note what the row's correction needs."""
+    since_contact_ns = state.contact_ns - state.done_lift_ns - 1e9 * state.done_swing_s
     state.done_lift_row, state.done_lift_ns = state.lift_row, state.lift_ns
     state.done_contact_row = state.contact_row
     state.done_swing_s = (state.contact_ns - state.lift_ns) * 1e-9
@@ -67,7 +75,8 @@ def finish(state: KalmanState) -> int:
     state.moving, state.contact_row = 0.0, -1.0
     state.lift_row, state.lift_ns = state.row - 1.0, state.elapsed_ns
     state.from_x, state.from_y, state.from_z = state.px, state.py, state.pz
-    return s.STRIDE if state.contact_ns - state.done_lift_ns >= SHORTEST_SWING_NS else s.FLICKER
+    long = state.contact_ns - state.done_lift_ns >= SHORTEST_SWING_NS
+    return s.STRIDE if long and since_contact_ns >= SHORTEST_STRIDE_NS else s.FLICKER
 
 
 @kernel

@@ -138,6 +138,7 @@ class KalmanState(Parameters, Window):
     from_z: float
     contact_row: float  # −1: none yet
     contact_ns: float
+    contact_mps: float  # speed by the filter's own account, before its first zero velocity
     at_x: float  # position at the contact, less the corrections so far
     at_y: float
     at_z: float

@@ -124,7 +124,15 @@ def test_starts_that_look_elsewhere_come_together(turned_rad: float) -> None:
 def samples(query: str, drift_radps: float) -> dict[str, list[Sample]]:
     return {
         name: [
-            Sample(name, i, int(row[0]), 0, tuple(row[1:4].tolist()), tuple(row[4:7].tolist()), None, 0, None)
+            Sample(
+                name,
+                i,
+                int(row[0]),
+                0,
+                tuple(row[1:4].tolist()),
+                tuple(row[4:7].tolist()),
+                tuple(row[7:10].tolist()),
+            )
             for i, row in enumerate(matrix)
         ]
         for name, matrix in matrices(query, drift_radps).items()
