@@ -86,6 +86,7 @@ class Visiting:
         self._start_ns: int | None = None  # of the simulated feet's clock
         self._now_ns: int | None = None
         self._looked_ns: int | None = None
+        self._fault, self._decided_ns = "", 0  # what was found then: a late look is no silence
         self._asked = self.decision  # by the feet, when it was last decided
         self._busy_ns: int | None = None  # when somebody last did something
         self._bob = self._depth = 0.0
@@ -168,7 +169,8 @@ class Visiting:
         self.sensors.listen(now_ns)
         hearing = self._heard(now_ns)
         self._asked = hearing.decision
-        self.decision = self._judge(hearing, hearing.fault(now_ns), now_ns)
+        self._fault, self._decided_ns = hearing.fault(now_ns), now_ns
+        self.decision = self._judge(hearing, self._fault, now_ns)
 
     @property
     def news(self) -> bool:
@@ -191,8 +193,7 @@ class Visiting:
         self._hunt(dt_s)
         self._go_on_with_guide()
         self._watch_idle(now_ns)
-        hearing = self._heard(now_ns)
-        return self._picture(hearing, hearing.fault(now_ns), now_ns)
+        return self._picture(self._heard(now_ns), self._fault, now_ns)
 
     def _heard(self, now_ns: int) -> Hearing:
         return self._puppets if self._puppeteered(now_ns) else self.sensors
@@ -287,7 +288,7 @@ class Visiting:
             eye_m=self._eye_m(),
             speed_mps=math.hypot(w.ahead_mps, w.right_mps), turn_radps=w.turn_radps, motion=d.motion,
             certain=d.certain, confidence=d.confidence, cadence_hz=d.cadence_hz, reason=d.reason,
-            feet=hearing.lights(now_ns), fault=fault,
+            feet=hearing.lights(self._decided_ns), fault=fault,
             message=self.message or self.trouble or hearing.intake.note(),
             halted=self.halted, touching=w.touching,
             goal=hunts.goal(self.hunt, w.north, w.east, w.heading_rad), score=self.hunt.found,

@@ -161,13 +161,27 @@
     part.vignette.style.opacity = s.vignette ? Math.min(1, s.speed / 1.2 + Math.abs(s.turn) / 0.8) : 0;
   }
 
+  // An operator's words stand between the two panels (their widths: mover_panel.py, machines.py).
+  const BESIDE = { left: 374, right: 364 }, LEAST_PX = 420, LEAST_UNIT_PX = 5.6;
+  let placed = "";
   function place() {
-    const f = mover.frame(), style = root.style;
-    style.left = `${f.left - f.x}px`;
-    style.top = `${f.top - f.y}px`;
-    style.width = `${f.W}px`;
-    style.height = `${f.H}px`;
-    style.setProperty("--unit", `${Math.min(f.H, 0.75 * f.W) / 100}px`);
+    const f = mover.frame(), bare = document.documentElement.classList.contains("mover-bare");
+    const beside = !bare && f.W - BESIDE.left - BESIDE.right >= LEAST_PX;
+    const left = f.left - f.x + (beside ? BESIDE.left : 0), width = f.W - (beside ? BESIDE.left + BESIDE.right : 0);
+    const unit = Math.max(Math.min(f.H, 0.75 * width) / 100, bare ? 0 : LEAST_UNIT_PX);
+    const where = `left:${left}px;top:${f.top - f.y}px;width:${width}px;height:${f.H}px;--unit:${unit}px`;
+    if (where !== placed) root.style.cssText = placed = where;
+  }
+  // Thirty times a second at most, and only when something has moved: it costs as much as a house.
+  const MAP_MS = 30;
+  let mapped = "", mappedMs = 0;
+  function showMap() {
+    const at = walker(), nowMs = performance.now();
+    if (!at || !state?.map || nowMs - mappedMs < MAP_MS) return;
+    const what = JSON.stringify([at, state.goal]);
+    if (what === mapped) return;
+    [mapped, mappedMs] = [what, nowMs];
+    drawMap(at);
   }
   function again() {
     requestAnimationFrame(again);
@@ -181,8 +195,7 @@
       root.classList.add("mv-ready");
       tell();
     }
-    const at = walker();
-    if (at && state?.map) drawMap(at);
+    showMap();
   }
   requestAnimationFrame(again);
 })();

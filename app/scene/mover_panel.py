@@ -137,7 +137,7 @@ def figures(visit: Visit) -> str:
             "Sure",
             f"{words.number(100 * visit.confidence, 0)} %" + ("" if visit.certain else ", not yet certain"),
         ),
-        ("Sample to scene", f"{words.number(visit.latency_ms, 1)} ms"),
+        ("Sample to scene", words.DASH if visit.simulated else f"{words.number(visit.latency_ms, 1)} ms"),
         ("Rates", ", ".join(f"{f.role.value} {words.number(f.rate_hz, 0)} Hz" for f in visit.feet)),
         ("Place", f"{words.number(visit.north, 1)} m north, {words.number(visit.east, 1)} m east"),
         ("Targets", f"{visit.score} of {visit.targets}, {words.clock(visit.hunt_s)}"),

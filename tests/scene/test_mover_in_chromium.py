@@ -27,7 +27,7 @@ from tests.scene.pages import PATIENCE_MS
 pytestmark = pytest.mark.timeout(400)
 
 TOWN = make_town()
-TILE = (600, 300)
+TILE = (360, 180)
 #: The town is there, its light map and the sky are finished, the state is shown, and nothing is left to draw.
 SETTLED = """() => {
   const nodes = window.__viserMutable?.nodeRefFromName, drawn = window.__viserTestpoints?.rendererInfo.render;
