@@ -58,8 +58,8 @@ def test_a_visitor_is_saved_once_the_name_is_whole(scene: MoverScene, orders: li
 def test_the_operator_reads_what_is_wrong_with_a_line_and_why_nothing_moves() -> None:
     visiting = Visiting(TOWN)
     visiting.trouble = "left foot: 12 % of packets damaged"
-    told = header(visiting.look(0))
+    told = header(visiting.step(0))
     assert "12 % of packets damaged" in told
     assert "no sensor is heard yet" in told
     visiting.message = "visitor anna saved"
-    assert "anna saved" in header(visiting.look(1))
+    assert "anna saved" in header(visiting.step(1))
