@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from app.blocks import Blocks
+from app.estimator.compass import FOOTPRINTS, CompassWatch
 from app.estimator.corrections import EVENT_WIDTH, correct
 from app.estimator.methods import METHODS
 from app.estimator.smoother import smooth
@@ -18,7 +19,7 @@ from app.gestures.words import FootReading
 from app.motion.basics import Role
 from app.motion.estimate import ROW_WIDTH
 from app.motion.samples import SAMPLE_WIDTH
-from app.rotation import from_yaw, rotate, yaw_of
+from app.rotation import conjugate, from_yaw, multiply, rotate, yaw_of
 from app.settings import BUILT_IN, Settings
 from app.trail import TrailBuilder, coarser
 
@@ -45,6 +46,7 @@ def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
     def orientations() -> None:
         yaw_of(from_yaw(0.1))
         rotate((1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+        multiply(conjugate(from_yaw(0.1)), from_yaw(0.1))
 
     def corrections() -> None:
         correct(rows, 0, samples.table(0, 1), event)
@@ -60,6 +62,12 @@ def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
         TrailBuilder("warm").add(rows)
         coarser(np.zeros((2, 2, 3), np.float32), 1.0)
 
+    def field() -> None:
+        watch = CompassWatch()
+        for _ in range(FOOTPRINTS):
+            watch.add(samples.table(0, 1), rows)
+        _ = watch.view
+
     def search() -> None:
         sweep(samples, Settings(), np.ones(1), np.ones(1))
 
@@ -68,6 +76,7 @@ def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
         yield "the Kalman filter", kalman
     else:
         yield "the papers' estimator", lambda: Tracker(Settings()).advance(samples)
+        yield "the look at the magnetic field", field
         yield "the search for gains", search
     yield "corrections", corrections
     yield "trails", trails

@@ -13,8 +13,8 @@ import numpy as np
 
 from app.compiled import kernel
 from app.motion.basics import Floats
-from app.motion.estimate import ATTITUDE, Compass
-from app.motion.samples import Column
+from app.motion.estimate import Compass
+from app.rotation import rotate
 
 #: So many footprints are judged together, and they must span so many metres.
 FOOTPRINTS, SPAN_M = 8, 4.0
@@ -89,31 +89,42 @@ def told(verdict: int, amount: float, holds: bool = False) -> Compass | None:
     return Compass(verdict == STEADY, why, holds and verdict == STEADY)
 
 
+@kernel
+def add_look(looks: Floats, samples: Floats, rows: Floats) -> bool:
+    """The newest look goes last: the mean field while these rows [k, 13] of a stance were made.
+
+    False, and nothing changed, where one of the samples [k, 10] has no field.
+    """
+    x, y, z, count = 0.0, 0.0, 0.0, rows.shape[0]
+    for i in range(count):
+        q_nb = (rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9])
+        turned = rotate(q_nb, (samples[i, 7], samples[i, 8], samples[i, 9]))
+        x, y, z = x + turned[0], y + turned[1], z + turned[2]
+    if count == 0 or not math.isfinite(x + y + z):
+        return False
+    looks[:-1] = looks[1:]
+    look = looks[-1]
+    look[0], look[1], look[2] = x / count, y / count, z / count
+    look[3], look[4] = rows[-1, 0], rows[-1, 1]
+    return True
+
+
 class CompassWatch:
-    """One foot's last looks at the field; ``view``: whether it may be believed, None where that is open."""
+    """One foot's last looks at the field, for an estimator that does not watch it in its step."""
 
     def __init__(self) -> None:
-        self.view: Compass | None = None
-        self._looks = np.empty((0, LOOK_WIDTH))
+        self._looks = np.zeros((FOOTPRINTS, LOOK_WIDTH))
+        self._count = 0
 
     def add(self, samples: Floats, rows: Floats) -> None:
         """A stance: its samples [k, 10] and its rows [k, 13]."""
-        field_b = samples[:, Column.MX :]
-        if not len(rows) or not np.isfinite(field_b).all():
-            return
-        look = np.append(_rotated(rows[:, ATTITUDE], field_b).mean(axis=0), rows[-1, :2])
-        self._looks = np.vstack([self._looks, look])[-FOOTPRINTS:]
-        self.view = told(*judge(self._looks)) if len(self._looks) == FOOTPRINTS else None
+        self._count += add_look(self._looks, samples, rows)
 
     def forget(self) -> None:
         """A new segment: what the gyro kept before says nothing of after."""
-        self._looks = self._looks[:0]
-        self.view = None
+        self._count = 0
 
-
-def _rotated(q_nb: Floats, vectors: Floats) -> Floats:
-    """Vectors [k, 3] of *b* in *n*, by quaternions [k, 4], wxyz."""
-    w, u = q_nb[:, :1], q_nb[:, 1:]
-    t = 2.0 * np.cross(u, vectors)
-    turned: Floats = vectors + w * t + np.cross(u, t)
-    return turned
+    @property
+    def view(self) -> Compass | None:
+        """Whether the field may be believed; None where that is open."""
+        return told(*judge(self._looks)) if self._count >= FOOTPRINTS else None
