@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from app.estimator.feet import BESIDE_M
+from app.estimator.together import BESIDE_M
 from app.estimator.tracker import track
 from app.settings import BUILT_IN, Settings
 from app.shell import batch

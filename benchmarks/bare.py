@@ -84,8 +84,8 @@ def loop(server: viser.ViserServer, frame: viser.FrameHandle, poses: Iterator[Po
     while not stopped:
         pose = next(poses)
         sets.append((time.monotonic_ns(), *pose))
-        frame.position = pose[:3]
-        frame.wxyz = pose[3:]
+        frame.position = np.array(pose[:3])
+        frame.wxyz = np.array(pose[3:])
         server.flush()
         due = max(due + FRAME_S, time.monotonic() - FRAME_S)
         time.sleep(max(0.0, due - time.monotonic()))

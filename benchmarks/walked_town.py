@@ -41,7 +41,7 @@ def note_decisions(watch: Watch) -> None:
             waits_ns.append(watch.frame_ns - watch.sample_ns)
             watch.sample_ns = None
 
-    Visiting.decide, Visiting.take = by_frame, taken  # type: ignore[method-assign]
+    Visiting.decide, Visiting.take = by_frame, taken  # type: ignore[method-assign, assignment]
 
 
 def note_places(watch: Watch) -> None:
@@ -53,7 +53,7 @@ def note_places(watch: Watch) -> None:
         decided.append((watch.frame_ns, *position, *wxyz))
         move(scene, north, east, heading_rad, eye_m)
 
-    MoverScene.move = moved  # type: ignore[method-assign]
+    MoverScene.move = moved  # type: ignore[method-assign, assignment]
 
 
 def main() -> None:

@@ -158,8 +158,8 @@ def test_it_is_the_same_to_the_bit_however_the_samples_come() -> None:
         feet = session.main.feet
         assert session.snapshot().main.linked
         found.append([feet[name].table(0, feet[name].tracker.rows.end).tobytes() for name in NAMES])
-        found[-1] += [repr(feet[name].strides(1000)) for name in NAMES]
-        found[-1] += [repr(feet[name].footprints()) for name in NAMES]
+        found[-1] += [repr(feet[name].strides(1000)).encode() for name in NAMES]
+        found[-1] += [repr(feet[name].footprints()).encode() for name in NAMES]
     assert found[0] == found[1] == found[2]
     _, rows = linked(SQUARE, 8e-3)
     assert found[0][:2] == [rows[name].tobytes() for name in NAMES]
@@ -308,13 +308,18 @@ def test_a_turn_goes_over_into_the_next_in_the_swing_only() -> None:
 
 
 def test_only_what_is_there_is_asked_for() -> None:
-    asked = []
+    asked: list[int] = []
+
+    def worn() -> dict[str, Worn]:
+        asked.append(1)
+        return WORN
+
     track = Track("t", DEFAULT)
     for name in NAMES:
         table = Blocks(10)
         table.extend(matrices(SQUARE)[name][:100])
         track.advance(name, table)
-        track.link(lambda: asked.append(1) or WORN)
+        track.link(worn)
     assert len(asked) == 1  # no stride yet: once when the second foot came, never again
-    track.link(lambda: asked.append(1) or WORN)
+    track.link(worn)
     assert len(asked) == 1
