@@ -1,4 +1,4 @@
-"""Intake, and what a track tells of a foot."""
+"""What a track tells of a foot."""
 
 from __future__ import annotations
 
@@ -9,44 +9,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.blocks import BLOCK
 from app.motion.basics import Role, Vector
-from app.motion.samples import Sample
 from app.settings import Settings
 from app.stores import SensorStore
 from app.tracks import Track
 from tests.estimator.walks import foot, one_by_one, rows_of
-
-REST: Vector = (0.0, 0.0, -9.8)
-ZERO: Vector = (0.0, 0.0, 0.0)
-
-
-def sample(ns: int, force: Vector = REST, rate: Vector = ZERO, field: Vector | None = None) -> Sample:
-    return Sample("foot", 0, ns, ns, force, rate, field)
-
-
-def test_intake_keeps_what_is_later_and_counts_the_rest() -> None:
-    store = SensorStore("foot", Role.FOOT)
-    taken = [store.take(sample(ns)) for ns in (100, 200, 200, 150, 300)]
-    assert taken == [True, True, False, False, True]
-    assert store.dropped == {"repeated time": 1, "time went backward": 1}
-    assert [store.time_ns(i) for i in range(store.samples.end)] == [0.0, 100.0, 200.0]
-
-
-@pytest.mark.parametrize("bad", [math.nan, math.inf, -math.inf, 1e6, -1e200])
-@pytest.mark.parametrize("place", [0, 1, 2])
-def test_what_no_sensor_reads_is_dropped(bad: float, place: int) -> None:
-    store = SensorStore("foot", Role.FOOT)
-    broken: Vector = (bad if place == 0 else 1.0, bad if place == 1 else 1.0, bad if place == 2 else 1.0)
-    assert not store.take(sample(1, force=broken))
-    assert not store.take(sample(1, rate=broken))
-    assert store.dropped == {"not a finite number": 2}
-    assert store.take(sample(1, field=broken))
-    block, at = store.samples.block(0)
-    assert all(math.isnan(x) for x in block[at, 7:10])
-
+from tests.sessions import sample
 
 extreme = st.floats(allow_nan=True, allow_infinity=True)
+
+
 vectors = st.tuples(extreme, extreme, extreme)
 
 
@@ -62,28 +34,6 @@ def test_no_sample_makes_a_row_that_is_not_finite(
     for foot_track in track.feet.values():
         rows = rows_of(foot_track.tracker)
         assert all(math.isfinite(x) for x in rows.ravel())
-
-
-def test_stamps_are_exact_however_far_from_zero() -> None:
-    store = SensorStore("foot", Role.FOOT)
-    start = 1_763_769_600_000_000_001
-    for i in range(3):
-        store.take(sample(start + i * 5_000_001))
-    assert store.time_ns(2) == 10_000_002.0
-
-
-def test_rate_and_the_row_at_a_time() -> None:
-    store = SensorStore("foot", Role.FOOT)
-    assert store.rate_hz() == 0.0
-    for i in range(BLOCK + 100):
-        store.take(sample(i * 10_000_000))
-    assert store.rate_hz() == pytest.approx(100.0)
-    assert store.row_at(-1.0) == 0
-    assert store.row_at(1.0) == 100
-    assert store.row_at(1.001) == 101
-    assert store.row_at(1e9) == BLOCK + 100
-    store.samples.drop_oldest()
-    assert store.row_at(0.0) == BLOCK
 
 
 def test_a_view_tells_the_last_stride_and_standing() -> None:

@@ -11,7 +11,7 @@ from app.session import Session
 from app.settings import Settings
 from app.shell import batch
 from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of
-from tests.test_session import fed, main_rows
+from tests.sessions import fed, main_rows
 
 KEYS = {"recording", "samples", "dropped_rows", "duration_s", "rate_hz", "estimator_s", "settings", "feet"}
 FOOT_KEYS = {
