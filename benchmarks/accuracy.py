@@ -10,7 +10,7 @@ from app.settings import BUILT_IN, Settings
 from app.shell import batch
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec
-from benchmarks import honesty, kinds, measured, mocap, peers
+from benchmarks import honesty, kinds, measured, mocap, north, peers
 from benchmarks import insoles as soles
 from benchmarks.figures import Figure, Section
 
@@ -111,6 +111,11 @@ def simulated_kinds() -> Section:
         note = f"p95 {p95:.2f} %, {failed} of {len(kind.walks)} walks failed"
         yield Figure(f"{kind.name}: RMSE / path, median", float(np.median(percents)), "%", note=note)
         yield Figure(f"{kind.name}: failed and called good", len(kind.unnoticed), "", 0)
+    for drift_radps in (north.DRIFT_RADPS, 0.0):
+        drifts = f"gyro drifts by {drift_radps:g} rad/s"
+        for name, gyro, field, lost in north.held(BUILT_IN["default"], drift_radps):
+            note = f"{gyro:.3f} % by the gyro alone; a walk loses {lost:+.3f} % at most"
+            yield Figure(f"{name}, {drifts}: RMSE / path, mean", field, "%", note=note)
 
 
 def walked(profile: str, settings: Settings, wanted: tuple[float | None, ...]) -> Section:
@@ -136,6 +141,10 @@ def walked(profile: str, settings: Settings, wanted: tuple[float | None, ...]) -
     height_limit = {"default": 0.5, "hindsight": 0.3}.get(profile)
     percent = 100.0 * abs(rise.rise_m) / rise.path_m
     yield Figure(f"{profile}: corridor: height at the end, worst", percent, "%", height_limit, note=rise.name)
+    if settings.estimator == "kalman":
+        free = list(measured.corridor(settings.with_changes({"same_floor_m": 0.0})))
+        percent = max(100.0 * abs(score.rise_m) / score.path_m for score in free)
+        yield Figure(f"{profile}: the same with no floor in mind (same_floor_m 0)", percent, "%")
     length = max(corridor, key=lambda score: abs(score.length_percent))
     yield Figure(
         f"{profile}: corridor: path too long by, worst", length.length_percent, "%", note=length.name
