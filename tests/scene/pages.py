@@ -32,11 +32,15 @@ def door_to(scene: Scene) -> Iterator[str]:
 
 
 def open_page(
-    browser: Browser, address: str, size: tuple[int, int] = (1280, 800), node: str = "/ned/foot"
+    browser: Browser,
+    address: str,
+    size: tuple[int, int] = (1280, 800),
+    node: str = "/ned/foot",
+    coarse: bool = False,
 ) -> Page:
-    """A page on which ``node`` has been drawn."""
+    """A page on which ``node`` has been drawn; ``coarse`` is quicker where only words matter."""
     page = browser.new_page(viewport={"width": size[0], "height": size[1]})
-    page.goto(f"{address}?fixedDpr=1")
+    page.goto(f"{address}?fixedDpr={0.25 if coarse else 1}")
     page.wait_for_function(DRAWN, arg=node, timeout=PATIENCE_MS)
     page.add_style_tag(content=NO_TOASTS)
     return page

@@ -65,7 +65,7 @@ def processes_of(browser: Browser) -> set[int]:
 
 
 def open_walk(browser: Browser, walk: Walk) -> Page:
-    page = open_page(browser, walk.door.address, (480, 320))
+    page = open_page(browser, walk.door.address, (480, 320), coarse=True)
     page.wait_for_function(f"() => ({AGE_S})() < 2", timeout=PATIENCE_MS)
     return page
 

@@ -23,7 +23,7 @@ HAND = "speed=8&first=40&still=4&turn=1&loop=1"
 def before_tab(browser: Browser, tmp_path: Path, source: str) -> Iterator[Page]:
     """The tab Before of a walk's page."""
     program = Program(tmp_path, "--source", source)
-    page = open_page(browser, program.address, (800, 800))
+    page = open_page(browser, program.address, (800, 800), coarse=True)
     try:
         page.get_by_text("Before", exact=True).first.click(timeout=PATIENCE_MS)
         yield page

@@ -58,7 +58,7 @@ def says(page: Page, words: str) -> None:
 def test_a_walk_through_the_library(
     browser: Browser, program: Program, tmp_path: Path, build_dir: Path
 ) -> None:
-    page = open_page(browser, program.address, (1100, 800))
+    page = open_page(browser, program.address, (1100, 800), coarse=True)
     page.get_by_role("tab", name="Library").click()
     says(page, "corridor.mcap")
     choose(page, "corridor.mcap")
