@@ -1,0 +1,1 @@
+"""Heart: the words that all rooms share, a file for each topic."""
