@@ -9,6 +9,7 @@ import logging
 import socket
 import ssl
 from dataclasses import dataclass, field
+from typing import Any
 
 from aiohttp import web
 
@@ -41,7 +42,7 @@ class Reception:
     server: web.Server
     counters: Counters
     tls: ssl.SSLContext | None
-    arriving: set[asyncio.Task[None]] = field(default_factory=set)
+    arriving: dict[asyncio.Task[None], Any] = field(default_factory=dict)  # and where each comes from
 
     async def accept(self, listener: socket.socket) -> None:
         """Take connections until cancelled; their number is known before the next is taken."""
@@ -56,22 +57,22 @@ class Reception:
             if self._has_room(str(address[0])):
                 _hold_little(connection)
                 task = asyncio.create_task(self._take(connection))
-                self.arriving.add(task)
-                task.add_done_callback(self.arriving.discard)
+                self.arriving[task] = address
+                task.add_done_callback(self.arriving.pop)
             else:
                 connection.close()
                 self.counters.refuse("full")
 
     def _has_room(self, address: str) -> bool:
-        connections = self.server.connections
-        if len(connections) + len(self.arriving) >= MAX_SOCKETS:
+        taken = [connection.peername for connection in self.server.connections]
+        held = taken + [peer for peer in self.arriving.values() if peer not in taken]  # each once
+        if len(held) >= MAX_SOCKETS:
             return False
-        peers = [peer for peer in (connection.peername for connection in connections) if peer]
-        return is_loopback(address) or sum(peer[0] == address for peer in peers) < MAX_SOCKETS_OF_ONE
+        return is_loopback(address) or sum(bool(p) and p[0] == address for p in held) < MAX_SOCKETS_OF_ONE
 
     def drop_all(self) -> None:
         """End every connection now, wait for none."""
-        for task in self.arriving:
+        for task in list(self.arriving):
             task.cancel()
         for connection in self.server.connections:
             if connection.transport is not None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import asyncio
 import json
 import logging
 import math
 import socket
+import time
 from collections.abc import Callable
 from typing import Any
 
@@ -217,6 +219,35 @@ def test_idle_sockets_are_bounded(
     for connection in held:
         connection.close()
     wait(lambda: _answers(house))
+
+
+def test_a_connection_that_comes_about_slowly_counts_once(
+    house: Any, wait: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    made = asyncio.BaseEventLoop.connect_accepted_socket
+
+    async def slowly(*args: Any, **options: Any) -> Any:
+        done = await made(*args, **options)
+        await asyncio.sleep(0.5)
+        return done
+
+    monkeypatch.setattr(asyncio.BaseEventLoop, "connect_accepted_socket", slowly)
+    monkeypatch.setattr(listening, "MAX_SOCKETS", 20)
+    for _ in range(30):
+        house.say(b"GET / HT")
+        time.sleep(0.005)
+    wait(lambda: house.door.counters.refused_full >= 10)
+    assert house.door.counters.refused_full == 10
+
+
+def test_one_caller_from_outside_holds_few(
+    house: Any, wait: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(listening, "is_loopback", lambda address: False)
+    for _ in range(listening.MAX_SOCKETS_OF_ONE + 6):
+        house.say(b"GET / HT")
+    wait(lambda: house.door.counters.refused_full >= 6)
+    assert house.door.counters.refused_full == 6
 
 
 def _answers(house: Any) -> bool:

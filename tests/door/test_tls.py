@@ -16,7 +16,7 @@ import pytest
 import websockets.sync.client as ws
 from cryptography import x509
 
-from app.door import selfmade, tls
+from app.door import listening, selfmade, tls
 from app.door.access import Access, Certificate
 from app.door.front import Door
 from app.motion.basics import InputError
@@ -79,6 +79,17 @@ def test_who_speaks_plain_is_told_and_nobody_waits_for_who_says_nothing(
     house.door.stop()
     for connection in silent:
         connection.close()
+
+
+def test_one_caller_from_outside_holds_few_that_never_begin(
+    certificate: Certificate, open_house: Any, wait: Callable[..., None], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(listening, "is_loopback", lambda address: False)
+    house = open_house(certificate=certificate)
+    for _ in range(listening.MAX_SOCKETS_OF_ONE + 6):
+        house.say(b"")
+    wait(lambda: house.door.counters.refused_full >= 6)
+    assert house.door.counters.refused_full == 6
 
 
 @pytest.mark.filterwarnings("ignore:ssl.TLSVersion")
