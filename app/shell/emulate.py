@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import contextlib
 import json
+import math
 import signal
 from collections import deque
 from collections.abc import AsyncIterator, Callable, Coroutine
@@ -76,6 +77,8 @@ class Emulator:
         self._model: Model | None = self._made()
         self._zero_ns: int | None = None  # the source's time at which its clock was 0
         self._free_s = self._now_s = 0.0  # of the line, and of the newest sample: a busy machine lags
+        self._next_s = math.inf  # when the next sample is due
+        self._unanswered = b""
         self._under_way: deque[tuple[float, bytes]] = deque()
         self._messages = self._bytes = self._passed_over = self._unheard = 0
         self._terminal = Terminal(wanted.device, self._baud, self._receive, bool(wanted.faults.unplugs))
@@ -127,11 +130,14 @@ class Emulator:
                 chunk = timeline.cut(first, min(first + _CHUNK, len(timeline)), 0)
                 for index, sample in enumerate(self._oriented(chunk, first), start=first):
                     elapsed_ns = timeline.elapsed_ns(index) + around_ns
-                    due_s = began_s + elapsed_ns * 1e-9
+                    self._next_s = due_s = began_s + elapsed_ns * 1e-9
                     if due_s > loop.time():
+                        self._obey()
                         await asyncio.sleep(due_s - loop.time())
                     yield sample._replace(device_ns=elapsed_ns), due_s
             if not self._loop:
+                self._next_s = math.inf
+                self._obey()
                 return
             around_ns += timeline.duration_ns + timeline.interval_ns
 
@@ -161,7 +167,14 @@ class Emulator:
             self._send(message, due_s)
 
     def _receive(self, data: bytes) -> None:
-        if self._model is not None and self._agrees():
+        """Obeyed after what was due before it came: a process held up has that still to measure."""
+        self._unanswered += data
+        if self._next_s > asyncio.get_running_loop().time():
+            self._obey()
+
+    def _obey(self) -> None:
+        data, self._unanswered = self._unanswered, b""
+        if data and self._model is not None and self._agrees():
             self._send(self._model.receive(data), self._now_s)
 
     def _agrees(self) -> bool:

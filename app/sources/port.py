@@ -46,9 +46,13 @@ class Port(asyncio.Protocol):
         self._news.set()
 
     async def read(self, timeout_s: float) -> list[tuple[int, bytes]]:
-        """What has arrived, with host times in ns; nothing after ``timeout_s``. Raises ``PortLostError``."""
+        """What has arrived, with host times in ns; nothing after ``timeout_s``. Raises ``PortLostError``.
+
+        However short the time, what has come to the port is fetched.
+        """
         if not self._arrived and not self._lost:
             self._news.clear()
+            await asyncio.sleep(0.0)  # the loop looks at the port
             with contextlib.suppress(TimeoutError):
                 async with asyncio.timeout(timeout_s):
                     await self._news.wait()

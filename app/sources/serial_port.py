@@ -27,7 +27,7 @@ from app.motion.source import Link, SourceInfo
 from app.sources.inbox import Inbox
 from app.sources.port import Port, PortLostError, open_port, refusal
 from app.sources.source import Item, Live
-from app.sources.starting import Started, Wish, start, start_known
+from app.sources.starting import Started, UnansweredError, Wish, start, start_known
 
 log = logging.getLogger(__name__)
 
@@ -35,6 +35,10 @@ log = logging.getLogger(__name__)
 WAITS_S = (0.1, 0.2, 0.4, 0.8, 1.0)
 #: A sensor that was heard and is silent for so long has lost its power, or its mind.
 SILENT_S = 2.0
+#: Where it did not answer, it is asked again so much later, so often, before the port is opened anew: what a
+#: slow sensor had to say meanwhile would be lost with the port.
+AGAIN_S = 1.0
+ASKED_AGAIN = 2
 #: Just opened, or just started, it may take longer: a board boots, a GX1's clock is measured.
 SILENT_AT_FIRST_S = 8.0
 #: Bytes that make no sample for so long: it was set to something else.
@@ -153,7 +157,7 @@ class SerialPort(Live):
             except PortLostError as error:
                 if self._seam.taken > taken:
                     waits = iter(WAITS_S)
-                    self._losses += 1
+                    self._losses += self._link is not Link.LOST
                     log.info("%s (after %d samples)", error, self._seam.taken)
                 wait_s = next(waits, WAITS_S[-1])
                 self._link = Link.LOST if self._seam.taken else Link.WAITING
@@ -187,29 +191,36 @@ class SerialPort(Live):
             self._seam.cut()
         self._started = started
 
-    async def _wake(self, port: Port, known: Started, silence: str) -> None:
-        """Start a sensor that fell silent, on the open port: one that merely lagged loses nothing by it."""
+    async def _wake(self, port: Port, known: Started, silence: str) -> bool:
+        """Start a sensor that fell silent, on the open port: one that merely lagged loses nothing by it.
+
+        Whether it answered.
+        """
         log.info("%s (after %d samples)", silence, self._seam.taken)
+        self._losses += self._link is not Link.LOST
         self._link, self._detail = Link.LOST, f"{silence}; asking it"
-        self._losses += 1
         found = Found(known.device, known.evidence)
         rate_hz = self._spec.wish.rate_hz
-        self._adopt(await start_known(port, known.baud, found, rate_hz, self._tell, tap=self._take))
+        try:
+            self._adopt(await start_known(port, known.baud, found, rate_hz, self._tell, tap=self._take))
+        except UnansweredError:
+            return False
+        return True
 
     async def _read(self, port: Port) -> None:
         """Decode what comes, until it ends in ``PortLostError``."""
-        patience_s, asked = SILENT_AT_FIRST_S, True
+        patience_s, tries = SILENT_AT_FIRST_S, 0
         sample_s = time.monotonic()
         while True:
             arrived = await port.read(patience_s)
             if not arrived:
                 silence = f"{port.path}: nothing came for {patience_s:g} s: check its power"
-                if asked or self._started is None:
+                if tries == 0 or self._started is None:
                     raise PortLostError(silence)
-                await self._wake(port, self._started, silence)
-                patience_s, asked = SILENT_AT_FIRST_S, True
+                awake = await self._wake(port, self._started, silence)
+                patience_s, tries = (SILENT_AT_FIRST_S, 0) if awake else (AGAIN_S, tries - 1)
                 continue
-            patience_s, asked = SILENT_S, False
+            patience_s, tries = SILENT_S, 1 + ASKED_AGAIN
             for host_ns, data in arrived:
                 if self._take(host_ns, data):
                     sample_s = time.monotonic()

@@ -53,6 +53,10 @@ class Started:
         return KINDS[self.device]
 
 
+class UnansweredError(PortLostError):
+    """The port is there, but its sensor does not do what it is asked: one sentence for the user."""
+
+
 async def start(port: Port, wish: Wish, tell: Tell) -> Started:
     """Find the sensor that is wished for and start it; ``PortLostError`` says what to do if that fails."""
     while (answer := await find(port, wish, tell)) is None:
@@ -70,13 +74,13 @@ async def start_known(
     heard: bytes = b"",
     tap: Tap | None = None,
 ) -> Started:
-    """Start a sensor of which is known what it is; the port is at ``baud``."""
+    """Start a sensor of which is known what it is; the port is at ``baud``. Or ``UnansweredError``."""
     kind = KINDS[found.device]
     if kind.start_up is None:
         return Started(found.device, baud, found.evidence, None, heard)
     talk = await converse(port, kind.start_up(asked_rate(kind, baud, rate_hz)), tell, tap)
     if talk.failed:
-        raise PortLostError(talk.failed)
+        raise UnansweredError(talk.failed)
     return Started(found.device, baud, found.evidence, talk.result, talk.left_over)
 
 
@@ -95,8 +99,8 @@ async def converse(port: Port, script: Script[Result], tell: Tell, tap: Tap | No
         ends_s = time.monotonic() + ask.timeout_s
         answered = False
         while not answered:
-            left_s = ends_s - time.monotonic()
-            arrived = await port.read(min(left_s, ask.quiet_s or math.inf)) if left_s > 0.0 else []
+            left_s = max(ends_s - time.monotonic(), 0.0)  # this process may have been held up: look once more
+            arrived = await port.read(min(left_s, ask.quiet_s or math.inf))
             if not arrived:
                 talk.expire()
                 break
