@@ -8,8 +8,8 @@ range is taken as 500 °/s until a rate well beyond it was read, unless a person
 from __future__ import annotations
 
 from app.compiled import kernel
-from app.estimator.covariance import add_turn_about
-from app.estimator.kalman_state import KalmanState
+from app.estimator.covariance import add_variance_along
+from app.estimator.kalman_state import ATTITUDE_AT, KalmanState
 from app.motion.basics import Vector
 from app.rotation import exponential, multiply, normalise, rotate
 
@@ -58,7 +58,7 @@ def mind_clipping(state: KalmanState, before: Vector, dt_s: float) -> None:
         if abs(rate) >= limit:
             state.clip[axis, 2] = 0.0 if clipped_n == 0.0 else state.clip[axis, 2] + dt_s
             state.clip[axis, 0] = clipped_n + 1.0
-            add_turn_about(state.P, axis_in_n(state, axis), (MISSED_RADPS * dt_s) ** 2)
+            add_variance_along(state.P, ATTITUDE_AT, axis_in_n(state, axis), (MISSED_RADPS * dt_s) ** 2)
             continue
         if clipped_n >= SHORTEST_RUN:
             mean_slope = min(0.5 * (state.clip[axis, 1] + slope), MOST_SLOPE)

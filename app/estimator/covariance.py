@@ -50,11 +50,11 @@ def add_variance(P: Floats, first: int, variance: float) -> None:
 
 
 @kernel
-def add_turn_about(P: Floats, axis_n: Vector, variance: float) -> None:
-    """Noise of the attitude about one axis only."""
+def add_variance_along(P: Floats, first: int, axis_n: Vector, variance: float) -> None:
+    """Noise on three parts of the error state, along one axis only (or about it)."""
     for i in range(3):
         for j in range(3):
-            P[6 + i, 6 + j] += variance * axis_n[i] * axis_n[j]
+            P[first + i, first + j] += variance * axis_n[i] * axis_n[j]
 
 
 @kernel

@@ -26,6 +26,7 @@ from app.estimator.detectors import (
 from app.estimator.floor import begin_floor
 from app.estimator.footfalls import end_footfalls, footfall, note_contact
 from app.estimator.gait import STANCE
+from app.estimator.jolts import doubt_jolts, forget_jolts, mind_jolts
 from app.estimator.kalman_state import (
     ATTITUDE_AT,
     FORCE_AT,
@@ -95,12 +96,14 @@ def step(state: KalmanState, reading: Reading) -> int:
     if not happened & s.RESTING:
         predict(state, force_before, rate_before, dt_s)
         mind_clipping(state, rate_before, dt_s)
+        mind_jolts(state, force_before, dt_s)
         note_motion(state, place)
         answer = stands(state, energy, least, rate2, dt_s)
         stood = answer != MOVES and is_confirmed(state, answer)
         if stood:
             if note_contact(state):
                 doubt_swing(state)
+                doubt_jolts(state)
                 begin_look(state)
             zero_velocity(state)
             look_at_field(state, reading.field_b)
@@ -147,6 +150,7 @@ def begin_segment(state: KalmanState) -> None:
     begin_window(state)
     for axis in range(3):
         state.clip[axis, 0] = 0.0
+    forget_jolts(state)
 
 
 @kernel

@@ -161,6 +161,10 @@ class KalmanState(Parameters, Window):
     misfit: float  # how far the last stance was from the velocity there, in the doubts about both: χ² of 3
     unfit: float  # … at the contacts of the last swings, on average
     unknown_m2: float  # σ² of the position beside P: what swings that did not fit may have gone wrong
+    missed_mps: float  # velocity that an accelerometer at the end of its range may have missed in this swing,
+    missed_at: float  # that times when, s since the lift,
+    missed_at2: float  # and times when squared
+    missed_m: float  # how far that may have moved all contacts so far, each the same way
     told: float  # 1: the gait around the sample is told (in hindsight), not remembered
     told_energy: float
     told_least: float
@@ -203,6 +207,7 @@ class KalmanState(Parameters, Window):
     fifth_squares: Floats
     fifth_white: Floats  # [3]: of the variances that independent samples would give those means
     clip: Floats  # [3, 3]: for each gyro axis: clipped samples in a row, slope on the way in, their seconds
+    jolts: Floats  # [3, 8]: for each accelerometer axis the columns of ``jolts.py``
     gains: Floats  # [5, 17]: what each measurement of the last step saw of P,
     totals: Floats  # [5]: its variance and P's (0: there was none),
     lefts: Floats  # [5]: and how far it was away
@@ -227,6 +232,7 @@ SHAPES: dict[str, tuple[int, ...]] = {
     "fifth_rate2": (3,),
     "fifth_white": (3,),
     "clip": (3, 3),
+    "jolts": (3, 8),
     "gains": (MEASURES, PARTS),
     "totals": (MEASURES,),
     "lefts": (MEASURES,),

@@ -12,7 +12,7 @@ from app.estimator import corrections, kalman_run, kalman_state, papers_run, res
 from app.estimator.gait import SWING
 from app.estimator.north import compass_of
 from app.estimator.state import Record
-from app.estimator.trust import trust_of
+from app.estimator.trust import trust_of, unknown_m2
 from app.motion.basics import Floats
 from app.motion.estimate import Compass, Trust
 from app.motion.samples import GyroBias
@@ -60,7 +60,7 @@ def _papers_doubts(_: Record) -> tuple[float, float]:
 def _kalman_doubts(record: Record) -> tuple[float, float]:
     state = record[0]
     known = max(float(np.min(state["bias_info"])), 1e-9)
-    return float(state["unknown_m2"]), min(max(known**-0.5, BIAS_RADPS[0]), BIAS_RADPS[1])
+    return unknown_m2(record), min(max(known**-0.5, BIAS_RADPS[0]), BIAS_RADPS[1])
 
 
 def _kalman_moves(record: Record) -> bool:
