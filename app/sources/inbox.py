@@ -35,9 +35,11 @@ class Inbox(Live):
         told: Callable[[], Sequence[str]] = tuple,
         line: Callable[[], Mapping[str, int]] = dict,
         counters: Callable[[], Mapping[str, Counters]] = dict,
+        temperatures: Callable[[], Mapping[str, float]] = dict,
     ) -> None:
         self._name, self._format = name, format_
         self._told, self._line, self._counters = told, line, counters
+        self._temperatures = temperatures
         self._lock = threading.Lock()
         self._waiting: list[Sample] = []
         self._sensors: dict[str, Role] = {}
@@ -79,7 +81,10 @@ class Inbox(Live):
         line = {what: count for what, count in self._line().items() if count}
         if self._overflowed:
             line["came faster than the walk could take them"] = self._overflowed
-        return SourceInfo(self._name, self._format, self._sensors, assumed=tuple(self._told()), line=line)
+        told, warmth = tuple(self._told()), self._temperatures()
+        return SourceInfo(
+            self._name, self._format, self._sensors, assumed=told, line=line, temperatures=warmth
+        )
 
     @property
     def counters(self) -> Mapping[str, Counters]:

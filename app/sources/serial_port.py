@@ -9,6 +9,7 @@ import asyncio
 import contextlib
 import errno
 import logging
+import math
 import os
 import threading
 import time
@@ -46,6 +47,8 @@ FRUITLESS_S = 10.0
 FIRST_BAUD = 115200
 #: A port that hangs is left behind after so long.
 CLOSE_S = 1.5
+#: Between the questions to a sensor that tells its temperature only when asked.
+ASK_S = 10.0
 
 
 @dataclass(frozen=True)
@@ -75,6 +78,7 @@ class SerialPort(Live):
         self._link = Link.WAITING
         self._detail = f"opening {spec.path}"
         self._losses = 0
+        self._asked_s = -math.inf
 
     @property
     def info(self) -> SourceInfo:
@@ -91,9 +95,12 @@ class SerialPort(Live):
         found = f"{started.device}: {started.evidence}"
         serial = str(getattr(started.setup, "serial", "") or "")
         serials = {spec.foot: f"{kind.title} {serial}"} if serial else {}
+        warm = decoder.temperature_c
+        warmth = {} if warm is None else {spec.foot: warm}
         firmware = str(getattr(started.setup, "firmware", "") or "")
         told = (found, *([f"firmware {firmware}"] if firmware else []), *assumed, *decoder.notes)
-        return SourceInfo(name, what, roles, assumed=told, line=_line(decoder), serials=serials)
+        line = _line(decoder)
+        return SourceInfo(name, what, roles, assumed=told, line=line, serials=serials, temperatures=warmth)
 
     @property
     def link(self) -> Link:
@@ -226,6 +233,13 @@ class SerialPort(Live):
                     sample_s = time.monotonic()
             if time.monotonic() - sample_s > FRUITLESS_S:
                 raise PortLostError(f"{port.path}: what comes makes no samples: starting the sensor anew")
+
+    def _ask_its_temperature(self, port: Port) -> None:
+        """Now and then, where it tells it only when asked."""
+        question = self._started.kind.question if self._started else b""
+        if question and time.monotonic() - self._asked_s > ASK_S:
+            self._asked_s = time.monotonic()
+            port.write(question)
 
     def _take(self, host_ns: int, data: bytes) -> bool:
         started, decoder = self._started, self._decoder

@@ -44,6 +44,7 @@ class UdpSource(Inbox):
             lambda: self._datagrams.notes,
             self._lost,
             lambda: self._datagrams.counters(),
+            lambda: self._datagrams.temperatures(),
         )
         self._closed = threading.Event()
         self._catcher = Catcher(self._socket)

@@ -30,10 +30,18 @@ from app.motion.samples import Sample
 
 
 class Decoder(Protocol):
-    """Bytes in, samples out. ``notes`` are sentences on what was assumed or found; they may grow."""
+    """Bytes in, samples out. ``notes`` are sentences on what was assumed or found; they may grow.
+
+    ``temperature_c`` is what the sensor's thermometer read last; a decoder that is asked for it seldom may
+    look it up then, but spends nothing on it with each sample.
+    """
 
     counters: Counters
     notes: list[str]
+
+    @property
+    def temperature_c(self) -> float | None:
+        """The sensor's temperature, °C; None while it told none."""
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes."""
@@ -58,7 +66,8 @@ class Kind:
     """One protocol. ``start_up`` is given the rate wanted; its result is the decoder's ``setup``.
 
     Without a ``start_up`` the device streams by itself. ``bauds`` stand in the order to try them.
-    ``sample_bytes`` is what a sample with everything takes on the line, about.
+    ``sample_bytes`` is what a sample with everything takes on the line, about. ``question`` is sent every few
+    seconds to one that tells its temperature only when asked.
     """
 
     title: str
@@ -69,6 +78,7 @@ class Kind:
     decoder: Callable[[str, Axes, Any], Decoder]  # sensor, mounting, setup or None
     model: Callable[[Axes], Model]
     start_up: Callable[[float], Script[Any]] | None = None
+    question: bytes = b""
 
 
 KINDS: dict[str, Kind] = {
@@ -81,6 +91,7 @@ KINDS: dict[str, Kind] = {
         gx1.Gx1Decoder,
         gx1_talk.Gx1Device,
         lambda _: gx1_talk.start_up(),  # its rate is its EEPROM's
+        bytes([gx1.TEMPERATURE]),
     ),
     "mip": Kind(
         "MicroStrain/HBK MIP",
@@ -136,7 +147,7 @@ KINDS: dict[str, Kind] = {
         lines.BAUDS,
         Z_UP,
         lines.FASTEST_HZ,
-        138,
+        146,
         lambda sensor, axes, _: lines.LinesDecoder(sensor, axes),
         lines.LinesDevice,
     ),

@@ -29,6 +29,8 @@ _VECTORS = {
 _QUATERNION = {"w": 0, "qw": 0, "q0": 0, "real": 0, "quatw": 0, "qx": 1, "q1": 1, "i": 1, "quatx": 1}
 _QUATERNION |= {"qy": 2, "q2": 2, "j": 2, "quaty": 2, "qz": 3, "q3": 3, "k": 3, "quatz": 3}
 _ARTEMIS = {"rtcdate", "imudegc", "outputhz"}
+_TEMPERATURE = re.compile(r"(imu)?temp(erature)?(deg)?c?|imudegc")
+_CELSIUS = {None, "c", "°c", "degc", "celsius"}
 
 
 @dataclass(frozen=True)
@@ -42,6 +44,7 @@ class Columns:
     field: tuple[int, int, int] | None
     orientation: tuple[int, int, int, int] | None
     seq: int | None
+    temperature: int | None  # in °C
     units: dict[str, str]
 
 
@@ -53,11 +56,11 @@ def find_columns(cells: Sequence[str]) -> Columns | None:
     units: dict[str, str] = {}
     for place, cell in enumerate(cells):
         name, unit = _split(cell)
-        known = _known(name)
+        known = _known(name, unit)
         if known is None or known in found:
             continue
         found[known] = place
-        if unit is not None:
+        if unit is not None and known[0] != "temperature":
             units.setdefault(known[0], unit)
     if not all((kind, i) in found for kind in ("force", "rate") for i in range(3)):
         return None
@@ -76,6 +79,7 @@ def find_columns(cells: Sequence[str]) -> Columns | None:
         _three(found, "field"),
         None if -1 in orientation else (orientation[0], orientation[1], orientation[2], orientation[3]),
         found.get(("seq", 0)),
+        found.get(("temperature", 0)),
         units,
     )
 
@@ -85,13 +89,15 @@ def _three(found: dict[tuple[str, int], int], kind: str) -> tuple[int, int, int]
     return None if -1 in places else (places[0], places[1], places[2])
 
 
-def _known(name: str) -> tuple[str, int] | None:
+def _known(name: str, unit: str | None) -> tuple[str, int] | None:
     if name in _TIMES:
         return "time", 0
     if name == "seq":
         return "seq", 0
     if name in _QUATERNION:
         return "orientation", _QUATERNION[name]
+    if _TEMPERATURE.fullmatch(name):
+        return ("temperature", 0) if unit in _CELSIUS else None
     return _VECTORS.get(name)
 
 

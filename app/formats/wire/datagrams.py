@@ -67,6 +67,11 @@ class Datagrams:
         """What became of the bytes: of our messages together, of others by sensor."""
         return {"messages": self.intake.counters} | {n: d.counters for n, d in self._decoders().items()}
 
+    def temperatures(self) -> dict[str, float]:
+        """Of the sensors that tell it, °C."""
+        told = {name: decoder.temperature_c for name, decoder in self._decoders().items()}
+        return {name: celsius for name, celsius in told.items() if celsius is not None}
+
     def lost(self) -> dict[str, int]:
         """What did not become a sample, by reason in words."""
         sums: Counter[str] = Counter()

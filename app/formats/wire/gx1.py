@@ -17,6 +17,7 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import Maker, Taker, quantised, scaled
 from app.formats.wire.stream import NO_PACKET, Frames, find_first
 from app.formats.wire.ticks import DeviceClock, TickLength
+from app.formats.wire.warmth import believed
 from app.motion.basics import Quaternion, Vector
 from app.motion.samples import Sample
 from app.rotation import conjugate, from_yaw_pitch_roll, pitch_of, roll_of, yaw_of
@@ -29,10 +30,14 @@ LENGTHS |= {0x0D: 11, 0x0E: 11, 0x0F: 5, 0x10: 7, 0x11: 5, 0x12: 31, 0x24: 5, 0x
 LENGTHS |= {0x29: 7, 0x31: 23, 0x40: 5, 0x41: 23, 0x42: 11, 0xF0: 5, 0xF1: 5}
 #: Messages with accelerometer and rate. 0x02 is not one: its acceleration is the filter's own vertical.
 VECTORS, QUATERNION, QUATERNION_2, EULER = 0x03, 0x0C, 0x12, 0x31
+#: Asked for now and then while it streams.
+TEMPERATURE = 0x07
 
 _UNIT = 1 / 8192  # quaternion and matrix elements
 _ANGLE = math.tau / 65536
 _HALF_TURN = 32768
+_VOLTS = 5 / 65536  # of the thermometer's code: 10 mV a degree, 0.5 V at 0 °C
+_ANCESTORS_DEGREES = 0.12207
 _KNOWN_TICKS_NS = (FACTORY_TICK_NS, 1_000_000, 3_000_000, 10_000_000)
 _WORDS = {length: struct.Struct(f">{length // 2}H") for length in set(LENGTHS.values())}
 _VECTORS = struct.Struct(">x9hH")
@@ -73,6 +78,16 @@ class Gx1Setup:
         return (force, self.gyro_gain / codes, self.mag_gain / codes * 100.0)
 
 
+def celsius(code: int, is_3dm_g: bool) -> float:
+    """What its thermometer's code says, °C."""
+    return code * _ANCESTORS_DEGREES if is_3dm_g else (code * _VOLTS - 0.5) * 100.0
+
+
+def _thermometer(degrees: float, is_3dm_g: bool) -> int:
+    """The inverse of ``celsius``."""
+    return round(degrees / _ANCESTORS_DEGREES if is_3dm_g else (degrees / 100.0 + 0.5) / _VOLTS) & 0xFFFF
+
+
 def frames() -> Frames:
     """The packets of a stream: known headers, their lengths, the word sum."""
     return Frames(find_first(bytes(LENGTHS)), _size, holds, max(LENGTHS.values()))
@@ -102,13 +117,17 @@ class Gx1Decoder:
         from_yaw_pitch_roll(0.0, 0.0, 0.0)  # compiled on its first call: no sample waits for it
         conjugate((1.0, 0.0, 0.0, 0.0))
         self._clock = None if self.setup.tick_ns is None else DeviceClock(self.setup.tick_ns, 16)
+        self.temperature_c: float | None = None  # newest, °C
         self._held: list[tuple[bytes, int]] = []  # messages and arrivals until the tick's length is known
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes."""
         samples: list[Sample] = []
         for message in self._frames.feed(data):
-            if message[0] not in (VECTORS, QUATERNION, QUATERNION_2, EULER):
+            if message[0] == TEMPERATURE:
+                told = celsius(int.from_bytes(message[1:3]), self.setup.is_3dm_g)
+                self.temperature_c = believed(told, self.temperature_c)
+            elif message[0] not in (VECTORS, QUATERNION, QUATERNION_2, EULER):
                 self.counters.unknown += 1
             elif self._clock is None:
                 samples += self._hold(message, host_ns)
@@ -175,6 +194,10 @@ class Gx1Encoder:
         if command in (QUATERNION, QUATERNION_2):
             words = [*self.quaternion(sample), *words]
         return framed(command, *words, self.ticks(sample))
+
+    def temperature(self, degrees: float) -> int:
+        """The thermometer's code."""
+        return _thermometer(degrees, self.setup.is_3dm_g)
 
     def quaternion(self, sample: Sample) -> list[int]:
         """Four codes, in the direction of the setup."""

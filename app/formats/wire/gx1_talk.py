@@ -19,6 +19,7 @@ from app.formats.wire.gx1 import (
 )
 from app.formats.wire.pace import Pace
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
+from app.formats.wire.warmth import warming
 from app.motion.basics import Quaternion, Vector
 from app.motion.samples import Sample
 from app.rotation import conjugate, rotate
@@ -267,7 +268,7 @@ class Gx1Device:
             0x02: self._vectors,
             0x04: lambda: encoder.quaternion(sample),
             0x05: lambda: encoder.quaternion(sample),
-            0x07: lambda: [round((25.0 / 100 + 0.5) * 65536 / 5)],
+            0x07: lambda: [encoder.temperature(warming(sample.device_ns))],
             0x0A: self._matrix,
             0x0B: self._matrix,
             0x0D: lambda: encoder.euler(sample),

@@ -22,6 +22,7 @@ from app.formats.wire.cells import (
     force_unit,
     named_cells,
     nanoseconds,
+    number,
     quad,
     time_unit,
     triple,
@@ -32,7 +33,8 @@ from app.formats.wire.decimals import Decimals
 from app.formats.wire.making import NED, Z_UP, Maker, Taker, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
-from app.motion.basics import InputError, Quaternion, Vector
+from app.formats.wire.warmth import believed, warming
+from app.motion.basics import InputError, Quaternion
 from app.motion.samples import Sample
 
 FASTEST_HZ = 1000.0
@@ -105,6 +107,15 @@ class LinesDecoder:
         self._whole = False  # the clock counts whole milli- or microseconds
         self._count: int | None = None
         self._decimals = Decimals()
+        self._newest: Row | None = None
+
+    @property
+    def temperature_c(self) -> float | None:
+        """What the newest row says in a column named so, °C."""
+        columns, cells, _ = self._newest or (None, [], 0)
+        if columns is None or columns.temperature is None:
+            return None
+        return believed(number(cells[columns.temperature]))
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes; a datagram of lines is such data."""
@@ -228,6 +239,7 @@ class LinesDecoder:
         field = None if columns.field is None else triple(cells, columns.field)
         sample = None
         if force is not None and rate is not None:
+            self._newest = row
             self._count_lost(columns, cells)
             device_ns = self._stamp(columns, cells, host_ns)
             if device_ns is not None:
@@ -268,22 +280,32 @@ class LinesDecoder:
 class LinesEncoder:
     """Samples as lines: a header that says every unit, then rows; or one JSON object a line.
 
-    Six decimals. What every row has is chosen once: the field and the quaternion, or not.
+    Six decimals. What every row has is chosen once: field, quaternion and temperature, or not.
+    ``temperature_c`` is what its thermometer reads.
     """
 
     def __init__(
-        self, axes: Axes = Z_UP, style: str = "csv", with_field: bool = True, with_orientation: bool = False
+        self,
+        axes: Axes = Z_UP,
+        style: str = "csv",
+        with_field: bool = True,
+        with_orientation: bool = False,
+        with_temperature: bool = False,
     ) -> None:
         self._taker = Taker(axes, RANGES["csv"])
         self._json = style == "json"
         self._names = ["t_us", *(f"a{axis}_mps2" for axis in "xyz"), *(f"g{axis}_radps" for axis in "xyz")]
-        self._parts: list[Callable[[Sample], Vector | Quaternion]] = [self._taker.force, self._taker.rate]
+        self._parts: list[Callable[[Sample], tuple[float, ...]]] = [self._taker.force, self._taker.rate]
         if with_field:
             self._names += [f"m{axis}_ut" for axis in "xyz"]
             self._parts.append(self._taker.field)
         if with_orientation:
             self._names += ["qw", "qx", "qy", "qz"]
             self._parts.append(self._taker.orientation)
+        self.temperature_c = 25.0
+        if with_temperature:
+            self._names += ["temp_c"]
+            self._parts.append(lambda _: (self.temperature_c,))
         self._begun = self._json
 
     def encode(self, sample: Sample) -> bytes:
@@ -304,7 +326,7 @@ class LinesDevice:
     rate_hz = FASTEST_HZ
 
     def __init__(self, axes: Axes = Z_UP, style: str = "csv") -> None:
-        self._encoder = LinesEncoder(axes, style)
+        self._encoder = LinesEncoder(axes, style, with_temperature=True)
 
     def receive(self, _: bytes) -> bytes:
         """It does not listen."""
@@ -312,4 +334,5 @@ class LinesDevice:
 
     def measure(self, sample: Sample) -> bytes:
         """The line of a new measurement."""
+        self._encoder.temperature_c = warming(sample.device_ns)
         return self._encoder.encode(sample)

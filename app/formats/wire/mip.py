@@ -17,6 +17,7 @@ from app.formats.units import G_MPS2
 from app.formats.wire.making import Maker, Taker, in_g, scaled
 from app.formats.wire.stream import UNKNOWN_YET, Frames, find_header
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
+from app.formats.wire.warmth import believed
 from app.motion.basics import Quaternion, Vector
 from app.motion.samples import Sample
 
@@ -25,6 +26,7 @@ SYNC = b"\x75\x65"
 SENSOR_DATA = 0x80
 ACCEL, GYRO, MAG, ORIENTATION, OLD_TICKS, GPS_TIME, OVER_RANGE = 0x04, 0x05, 0x06, 0x0A, 0x0E, 0x12, 0x18
 SHARED_GPS_TIME, REFERENCE_TIME = 0xD3, 0xD5
+TEMPERATURE = 0x14
 
 _TRIPLE = struct.Struct(">3f")
 _QUAD = struct.Struct(">4f")
@@ -101,12 +103,20 @@ class MipDecoder:
         self._clock_kind = 0
         self._clock: DeviceClock | None = None
         self._arrival = ArrivalClock(self.setup.rate_hz)
+        self._warmth = b""
+
+    @property
+    def temperature_c(self) -> float | None:
+        """The newest, the mean of its thermometers, °C."""
+        return believed(_TRIPLE.unpack(self._warmth)[2]) if len(self._warmth) == _TRIPLE.size else None
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes; acknowledgements may lie between."""
         samples = []
         for whole in self._frames.feed(data):
             fields = dict(fields_of(whole)) if whole[2] == SENSOR_DATA else {}
+            if TEMPERATURE in fields:
+                self._warmth = fields[TEMPERATURE]
             if len(fields.get(ACCEL, b"")) != 12 or len(fields.get(GYRO, b"")) != 12:
                 self.counters.unknown += 1
             elif (sample := self._read(fields, host_ns)) is None:
@@ -167,11 +177,13 @@ class MipEncoder:
     """A sample as one packet: scaled accel, gyro and mag, orientation where there is one, and time.
 
     Generation 7 stamps with the reference time, generation 5 with the GPS time since power-up.
+    ``temperature_c`` is what its thermometers read.
     """
 
     def __init__(self, axes: Axes = AS_GIVEN, setup: MipSetup | None = None) -> None:
         self.setup = setup or MipSetup()
         self._taker = Taker(axes, self.setup.full_scale)
+        self.temperature_c = 25.0
 
     def encode(self, sample: Sample) -> bytes:
         """The packet with everything the sample has."""
@@ -199,6 +211,7 @@ class MipEncoder:
             ORIENTATION: lambda: _QUAD.pack(*taker.orientation(sample)),
             OLD_TICKS: lambda: (round(ns / 16_000) & 0xFFFFFFFF).to_bytes(4),
             REFERENCE_TIME: lambda: ns.to_bytes(8),
+            TEMPERATURE: lambda: _TRIPLE.pack(*(self.temperature_c + off for off in (-0.25, 0.25, 0.0))),
             OVER_RANGE: lambda: _nibbles(taker.saturation(sample)).to_bytes(2),
         }.get(kind)
         return b"" if made is None else made()

@@ -12,6 +12,7 @@ from app.formats.wire.mip import (
     OVER_RANGE,
     REFERENCE_TIME,
     SENSOR_DATA,
+    TEMPERATURE,
     Fields,
     MipEncoder,
     MipSetup,
@@ -23,6 +24,7 @@ from app.formats.wire.mip import (
 from app.formats.wire.pace import Pace
 from app.formats.wire.stream import Frames
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
+from app.formats.wire.warmth import RATE_HZ, warming
 from app.motion.samples import Sample
 
 BAUDS = (115200, 460800, 921600, 230400, 38400)
@@ -51,8 +53,11 @@ def start_up(rate_hz: float = 200.0) -> Script[MipSetup]:
     if not base_hz:
         raise RefusedError("the MIP sensor does not tell its base rate: update its firmware")
     decimation = max(round(base_hz / rate_hz), 1)
+    once = max(round(base_hz / RATE_HZ), decimation)  # the thermometer's decimation
     for optional in ([ORIENTATION, OVER_RANGE], [OVER_RANGE], [ORIENTATION], []):
-        answer = yield _format(generation, decimation, optional)
+        answer = yield _format(generation, decimation, [*optional, TEMPERATURE], once)
+        if _error(answer) != _OK:
+            answer = yield _format(generation, decimation, optional, once)
         if _error(answer) == _OK:
             break
     else:
@@ -70,10 +75,11 @@ def _ask(descriptor_set: int, command: int, data: bytes, what: str) -> Ask:
     return Ask(packet(descriptor_set, (command, data)), what, acknowledged(descriptor_set, command), 0.5)
 
 
-def _format(generation: int, decimation: int, optional: list[int]) -> Ask:
+def _format(generation: int, decimation: int, optional: list[int], once: int) -> Ask:
     time = REFERENCE_TIME if generation == 7 else GPS_TIME
     wanted = [time, ACCEL, GYRO, MAG, *optional]
-    layout = b"".join(bytes([kind]) + decimation.to_bytes(2) for kind in wanted)
+    every = {TEMPERATURE: once}
+    layout = b"".join(bytes([kind]) + every.get(kind, decimation).to_bytes(2) for kind in wanted)
     head = bytes([_WRITE, SENSOR_DATA, len(wanted)]) if generation == 7 else bytes([_WRITE, len(wanted)])
     return _ask(THREE_DM, 0x0F if generation == 7 else 0x08, head + layout, "choosing its messages")
 
@@ -129,13 +135,15 @@ def _who(answer: bytes | None) -> tuple[str, str, str]:
 class MipDevice:
     """A MIP sensor as its host sees it: ``receive`` its commands, ``measure`` a sample.
 
-    It sends at ``base_hz`` over the message format's decimation.
+    It sends at ``base_hz`` over the message format's decimation, each field at its own.
     """
 
     def __init__(self, axes: Axes = AS_GIVEN, generation: int = 7, base_hz: int = 1000) -> None:
         self.decimation = max(base_hz // 100, 1)
         self.streaming = True
         self.wanted = [REFERENCE_TIME if generation == 7 else GPS_TIME, ACCEL, GYRO, MAG]
+        self._rarer: dict[int, Pace] = {}  # fields that come less often than the others
+        self._every: dict[int, int] = {}
         self._enabled = True
         self._generation, self._base_hz = generation, base_hz
         self._encoder = MipEncoder(axes, MipSetup(generation=generation))
@@ -159,7 +167,12 @@ class MipDevice:
         """Take a new measurement; the packet, whenever one is due."""
         if not (self.streaming and self._enabled and self._pace.due(sample.device_ns, self.rate_hz)):
             return b""
-        return self._encoder.message(sample, self.wanted)
+        self._encoder.temperature_c = warming(sample.device_ns)
+        ns, base_hz = sample.device_ns, self._base_hz
+        left_out = [
+            kind for kind, pace in self._rarer.items() if not pace.due(ns, base_hz / self._every[kind])
+        ]
+        return self._encoder.message(sample, [kind for kind in self.wanted if kind not in left_out])
 
     def _reply(self, descriptor_set: int, command: int, data: bytes) -> bytes:
         error, answer = self._obey(descriptor_set, command, data)
@@ -198,4 +211,6 @@ class MipDevice:
             return _BAD_PARAMETER
         self.wanted = [kind for kind, _ in entries]
         self.decimation = min(decimation for _, decimation in entries)
+        self._every = {kind: every for kind, every in entries if every > self.decimation}
+        self._rarer = {kind: Pace() for kind in self._every}
         return _OK

@@ -1,7 +1,8 @@
 """Heart: x-io NGIMU: OSC 1.0 bundles, a datagram each over UDP, SLIP frames over a serial line.
 
 The bundle's time tag is the device's clock. Axes: x ahead, z up. Unverified: its quaternion's earth
-frame (taken as north–west–up, as its maker's other sensors) and its ranges.
+frame (taken as north–west–up, as its maker's other sensors), its ranges, and that of its temperatures
+the first is the processor's and the second the sensors'.
 """
 
 from __future__ import annotations
@@ -22,18 +23,21 @@ from app.formats.wire.making import (
     measured,
     scaled,
 )
+from app.formats.wire.pace import Pace
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
+from app.formats.wire.warmth import RATE_HZ, believed, warming
 from app.motion.basics import Quaternion
 from app.motion.samples import GAP_NS, Sample
 
 FASTEST_HZ = 400.0
-SENSORS, QUATERNION = b"/sensors", b"/quaternion"
+SENSORS, QUATERNION, TEMPERATURE = b"/sensors", b"/quaternion", b"/temperature"
 IDENTIFY = b"/identify\0\0\0,\0\0\0"  # flashes its lights
 
 _BUNDLE = b"#bundle\0"
 _LARGEST = 2048
 _IMMEDIATELY = 1
+_PROCESSOR_C = 4.0  # a modelled one is so much hotter than the sensors
 _END, _ESCAPE = b"\xc0", b"\xdb"
 _WIDTHS = {"f": 4, "i": 4, "r": 4, "c": 4, "m": 4, "d": 8, "h": 8, "t": 8, "T": 0, "F": 0, "N": 0, "I": 0}
 
@@ -142,6 +146,7 @@ class NgimuDecoder:
         self._untimed_ns: int | None = None  # the last stamp by arrival
         self._ahead_ns = 0  # what keeps the packets' time ahead of it
         self._orientation: Quaternion | None = None
+        self.temperature_c: float | None = None  # newest, of its sensors, °C
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes."""
@@ -150,11 +155,13 @@ class NgimuDecoder:
             tag, messages = parse(packet) or (0, {})
             if len(q := messages.get(QUATERNION, ())) == 4:
                 self._orientation = (q[0], q[1], q[2], q[3])
+            if warmth := messages.get(TEMPERATURE):
+                self.temperature_c = believed(warmth[:2][-1], self.temperature_c)
             if len(numbers := messages.get(SENSORS, ())) >= 9:
                 sample = self._read(tag, numbers, host_ns)
                 self.counters.dropped += sample is None
                 samples += [] if sample is None else [sample]
-            elif QUATERNION not in messages:
+            elif QUATERNION not in messages and TEMPERATURE not in messages:
                 self.counters.unknown += 1
         return samples
 
@@ -222,19 +229,21 @@ def _padded(text: bytes) -> bytes:
 
 
 class NgimuEncoder:
-    """A sample as one bundle: quaternion, if there is one, then sensors."""
+    """A sample as one bundle: temperature and quaternion, if there are, then sensors."""
 
     def __init__(self, axes: Axes = Z_UP, slip: bool = False) -> None:
         self._taker = Taker(axes, RANGES["ngimu"], NWU)
         self._slip = slip
 
-    def encode(self, sample: Sample) -> bytes:
+    def encode(self, sample: Sample, celsius: float | None = None) -> bytes:
         """One datagram, or one SLIP frame; the barometer reads 1013.25 hPa."""
         taker = self._taker
         rate, force = scaled(taker.rate(sample), 1 / RAD_PER_DEG), in_g(taker.force(sample))
         messages = [message(SENSORS, (*measured(rate), *measured(force), *taker.field(sample), 1013.25))]
         if sample.device_q_nb is not None:
             messages.insert(0, message(QUATERNION, taker.orientation(sample)))
+        if celsius is not None:
+            messages.insert(0, message(TEMPERATURE, (celsius + _PROCESSOR_C, celsius)))
         packet = bundle(time_tag(sample.device_ns), *messages)
         return framed(packet) if self._slip else packet
 
@@ -246,6 +255,7 @@ class NgimuDevice:
 
     def __init__(self, axes: Axes = Z_UP, slip: bool = False) -> None:
         self._encoder = NgimuEncoder(axes, slip)
+        self._warmth = Pace()
 
     def receive(self, _: bytes) -> bytes:
         """Commands have no answer."""
@@ -253,4 +263,5 @@ class NgimuDevice:
 
     def measure(self, sample: Sample) -> bytes:
         """The bundle of a new measurement."""
-        return self._encoder.encode(sample)
+        due = self._warmth.due(sample.device_ns, RATE_HZ)
+        return self._encoder.encode(sample, warming(sample.device_ns) if due else None)

@@ -20,6 +20,7 @@ from app.formats.wire.pace import Pace
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_header
 from app.formats.wire.talk import Ask, Script
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
+from app.formats.wire.warmth import believed, warming
 from app.motion.basics import Quaternion, Vector
 from app.motion.samples import Sample
 
@@ -35,6 +36,7 @@ _TIME = struct.Struct("<xx6BHx")
 _FORCE = 16 * G_MPS2 / 32768
 _RATE = math.radians(2000) / 32768
 _UNIT = 1 / 32768
+_DEGREE = 0.01
 _DAY_MS = 86_400_000
 _FIRST_DAY = date(2000, 1, 1).toordinal()
 
@@ -79,6 +81,12 @@ class WitmotionDecoder:
         self._timed: bool | None = None
         self._burst: dict[int, bytes] = {}
         self._kinds: frozenset[int] | None = None  # of a whole burst
+        self._newest = b""  # frame of the acceleration
+
+    @property
+    def temperature_c(self) -> float | None:
+        """What stands beside the newest acceleration, °C."""
+        return believed(_WORDS.unpack(self._newest)[3] * _DEGREE) if self._newest else None
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes."""
@@ -108,6 +116,7 @@ class WitmotionDecoder:
         device_ns = self._stamp(burst.get(TIME), host_ns)
         if device_ns is None:
             return None
+        self._newest = burst[ACCEL]
         force, rate = scaled(_words(burst[ACCEL]), _FORCE), scaled(_words(burst[GYRO]), _RATE)
         field = _words(burst[MAG]) if MAG in burst else None
         q: Quaternion | None = None
@@ -141,11 +150,15 @@ def _milliseconds(frame: bytes) -> int:
 
 
 class WitmotionEncoder:
-    """A sample as one burst: time (if ``timed``), acceleration, rate, field, quaternion."""
+    """A sample as one burst: time (if ``timed``), acceleration, rate, field, quaternion.
+
+    ``temperature_c`` is what its thermometer reads.
+    """
 
     def __init__(self, axes: Axes = Z_UP, timed: bool = False) -> None:
         self._taker = Taker(axes, RANGES["witmotion"], earth=ENU)
         self._timed = timed
+        self.temperature_c = 25.0
 
     def encode(self, sample: Sample) -> bytes:
         """The burst with everything the sample has."""
@@ -165,20 +178,20 @@ class WitmotionEncoder:
             case 0x50:
                 return framed(kind, _calendar(sample.device_ns))
             case 0x51:
-                return framed(kind, _codes(taker.force(sample), _FORCE))
+                return framed(kind, self._codes(taker.force(sample), _FORCE))
             case 0x52:
-                return framed(kind, _codes(taker.rate(sample), _RATE))
+                return framed(kind, self._codes(taker.rate(sample), _RATE))
             case 0x54:
-                return framed(kind, _codes(taker.field(sample), 1.0))
+                return framed(kind, self._codes(taker.field(sample), 1.0))
             case 0x59:
                 return framed(
                     kind, struct.pack("<4h", *(quantised(part, _UNIT) for part in taker.orientation(sample)))
                 )
         return b""
 
-
-def _codes(v: Vector, lsb: float) -> bytes:
-    return struct.pack("<4h", *(quantised(value, lsb) for value in v), 2500)  # 25 °C
+    def _codes(self, v: Vector, lsb: float) -> bytes:
+        codes = (quantised(value, lsb) for value in v)
+        return struct.pack("<4h", *codes, quantised(self.temperature_c, _DEGREE))
 
 
 def _calendar(device_ns: int) -> bytes:
@@ -235,6 +248,7 @@ class WitmotionDevice:
         """The burst of the frames that are switched on, whenever one is due."""
         if not self._pace.due(sample.device_ns, self.rate_hz):
             return b""
+        self._encoder.temperature_c = warming(sample.device_ns)
         return self._encoder.burst(sample, [0x50 + n for n in range(11) if self.outputs >> n & 1])
 
     @property

@@ -28,6 +28,7 @@ from app.formats.wire.making import (
 )
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import DeviceClock
+from app.formats.wire.warmth import believed
 from app.motion.basics import Quaternion
 from app.motion.samples import Sample
 
@@ -128,6 +129,7 @@ class Ximu3Decoder:
         self._clock = DeviceClock(TICK_NS, 64)
         self._field: tuple[float, ...] = ()
         self._orientation: tuple[float, ...] = ()
+        self.temperature_c: float | None = None  # newest, °C
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes; a datagram is such data too."""
@@ -142,6 +144,8 @@ class Ximu3Decoder:
                 self._field = numbers
             elif kind == "Q":
                 self._orientation = numbers
+            elif kind == "T":
+                self.temperature_c = believed(numbers[0], self.temperature_c)
             else:
                 self.counters.unknown += 1
         return samples
@@ -195,6 +199,10 @@ class Ximu3Encoder:
     def orientation(self, sample: Sample) -> bytes:
         """Quaternion."""
         return self._message("Q", _micros(sample), self._taker.orientation(sample))
+
+    def temperature(self, sample: Sample, celsius: float) -> bytes:
+        """What its thermometer reads, °C."""
+        return self._message("T", _micros(sample), (celsius,))
 
 
 def _micros(sample: Sample) -> int:

@@ -9,6 +9,7 @@ from app.formats.mounting import Axes
 from app.formats.wire.making import Z_UP
 from app.formats.wire.pace import Pace
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
+from app.formats.wire.warmth import RATE_HZ, warming
 from app.formats.wire.ximu3 import Ximu3Encoder
 from app.motion.samples import Sample
 
@@ -73,7 +74,7 @@ class Ximu3Device:
     """An x-IMU3 as its host sees it: ``receive`` its commands, ``measure`` a sample.
 
     Its divisor is kept by leaving samples out, though the device averages. The magnetometer keeps
-    to 20 Hz.
+    to 20 Hz, the thermometer to 1 Hz.
     """
 
     def __init__(self, axes: Axes = Z_UP, binary: bool = True, name: str = "emulated") -> None:
@@ -81,7 +82,7 @@ class Ximu3Device:
         self.settings |= {"binaryModeEnabled": binary, "inertialMessageRateDivisor": 8}
         self.settings |= {"ahrsMessageRateDivisor": 8}
         self._encoders = {True: Ximu3Encoder(axes, True), False: Ximu3Encoder(axes, False)}
-        self._paces = {kind: Pace() for kind in ("field", "orientation", "inertial")}
+        self._paces = {kind: Pace() for kind in ("field", "orientation", "inertial", "warmth")}
         self._pending = b""
 
     def receive(self, data: bytes) -> bytes:
@@ -94,6 +95,8 @@ class Ximu3Device:
         """Take a new measurement; the messages that are due."""
         encoder = self._encoders[bool(self.settings["binaryModeEnabled"])]
         sent = b""
+        if self._paces["warmth"].due(sample.device_ns, RATE_HZ):
+            sent += encoder.temperature(sample, warming(sample.device_ns))
         if sample.field_b is not None and self._paces["field"].due(sample.device_ns, _FIELD_HZ):
             sent += encoder.field(sample)
         if sample.device_q_nb is not None and self._due("orientation", "ahrsMessageRateDivisor", sample):

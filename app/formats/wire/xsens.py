@@ -15,6 +15,7 @@ from app.formats.saturation import RANGES, Range
 from app.formats.wire.making import ENU, NED, NWU, Z_UP, Maker, Taker
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_header
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
+from app.formats.wire.warmth import believed
 from app.motion.basics import Quaternion, Vector
 from app.motion.samples import Sample
 from app.rotation import conjugate, multiply
@@ -24,6 +25,7 @@ SYNC = b"\xfa\xff"
 MTDATA2 = 0x36
 PACKET_COUNTER, TIME_FINE, QUATERNION = 0x1020, 0x1060, 0x2010
 ACCELERATION, RATE_OF_TURN, MAGNETIC_FIELD, STATUS_WORD = 0x4020, 0x8020, 0xC020, 0xE020
+TEMPERATURE = 0x0810
 TICK_NS = 100_000
 
 _LONGEST = 2048  # of data: the protocol allows more, no MTi sends it
@@ -34,7 +36,7 @@ _EARTHS: dict[int, Quaternion] = {0x0: ENU, 0x4: NED, 0x8: NWU}
 _STRUCTS = {
     (form, count): struct.Struct(f">{count}{letter}")
     for form, (_, letter) in _FORMATS.items()
-    for count in (3, 4)
+    for count in (1, 3, 4)
 }
 
 
@@ -105,12 +107,21 @@ class XsensDecoder:
         self._clock: DeviceClock | None = None
         self._arrival = ArrivalClock(self.setup.rate_hz)
         self._count: int | None = None
+        self._warmth = (0, b"")
+
+    @property
+    def temperature_c(self) -> float | None:
+        """The newest, °C."""
+        numbers = _numbers(*self._warmth, 1)
+        return believed(numbers[0]) if numbers else None
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes."""
         samples = []
         for whole in self._frames.feed(data):
             items = _items(data_of(whole)) if whole[2] == MTDATA2 else {}
+            if TEMPERATURE in items:
+                self._warmth = items[TEMPERATURE]
             if ACCELERATION not in items or RATE_OF_TURN not in items:
                 self.counters.unknown += 1
             elif (sample := self._read(items, host_ns)) is None:
@@ -195,10 +206,14 @@ def _orientation(items: dict[int, tuple[int, bytes]]) -> Quaternion | None:
 
 
 class XsensEncoder:
-    """A sample as one MTData2 in float32: counter, fine time, and what the sample has."""
+    """A sample as one MTData2 in float32: counter, fine time, and what the sample has.
+
+    ``temperature_c`` is what its thermometer reads.
+    """
 
     def __init__(self, axes: Axes = Z_UP, setup: XsensSetup | None = None) -> None:
         self._taker = Taker(axes, (setup or XsensSetup()).full_scale)
+        self.temperature_c = 25.0
 
     def encode(self, sample: Sample) -> bytes:
         """The message with everything the sample has."""
@@ -217,6 +232,8 @@ class XsensEncoder:
     def _data(self, kind: int, sample: Sample, count: int) -> bytes:
         taker = self._taker
         match kind:
+            case 0x0810:
+                return struct.pack(">f", self.temperature_c)
             case 0x1020:
                 return (count & 0xFFFF).to_bytes(2)
             case 0x1060:

@@ -7,6 +7,7 @@ from app.formats.wire.making import Z_UP
 from app.formats.wire.pace import Pace
 from app.formats.wire.stream import Frames
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
+from app.formats.wire.warmth import RATE_HZ, warming
 from app.formats.wire.xsens import (
     ACCELERATION,
     MAGNETIC_FIELD,
@@ -15,6 +16,7 @@ from app.formats.wire.xsens import (
     RATE_OF_TURN,
     STATUS_WORD,
     SYNC,
+    TEMPERATURE,
     TIME_FINE,
     XsensEncoder,
     XsensSetup,
@@ -43,7 +45,7 @@ def start_up(rate_hz: float = 100.0) -> Script[XsensSetup]:
     product = _data((yield _ask(REQ_PRODUCT, b"", "reading its name")))
     rate = min(max(round(rate_hz), 1), 2000)
     chosen: dict[int, int] = {}
-    for optional in ((QUATERNION,), ()):
+    for optional in ((QUATERNION, TEMPERATURE), (QUATERNION,), ()):
         answer = yield _ask(SET_OUTPUT, _configuration(rate, optional), "choosing its output")
         chosen = _chosen(_data(answer))
         if ACCELERATION in chosen and RATE_OF_TURN in chosen:
@@ -84,7 +86,8 @@ def answer(mid: int) -> FindAnswer:
 
 def _configuration(rate: int, optional: tuple[int, ...]) -> bytes:
     items = [(PACKET_COUNTER, _EVERY), (TIME_FINE, _EVERY), (STATUS_WORD, _EVERY)]
-    items += [(kind, rate) for kind in (ACCELERATION, RATE_OF_TURN, MAGNETIC_FIELD, *optional)]
+    asked = (ACCELERATION, RATE_OF_TURN, MAGNETIC_FIELD, *optional)
+    items += [(kind, round(RATE_HZ) if kind == TEMPERATURE else rate) for kind in asked]
     return b"".join(kind.to_bytes(2) + hertz.to_bytes(2) for kind, hertz in items)
 
 
@@ -116,6 +119,8 @@ class XsensDevice:
         self.rate_hz = 100.0  # how often it sends: give it samples at this rate
         self._count = 0
         self._pace = Pace()
+        self._rarer: dict[int, Pace] = {}  # what comes less often than the rest
+        self._rates: dict[int, int] = {}
 
     def receive(self, data: bytes) -> bytes:
         """The replies to what the host sent; what is no message is passed over."""
@@ -126,7 +131,11 @@ class XsensDevice:
         if not (self.measuring and self._pace.due(sample.device_ns, self.rate_hz)):
             return b""
         self._count += 1
-        return self._encoder.mtdata2(sample, self.wanted, self._count)
+        self._encoder.temperature_c = warming(sample.device_ns)
+        ns = sample.device_ns
+        left_out = [kind for kind, pace in self._rarer.items() if not pace.due(ns, self._rates[kind])]
+        wanted = [kind for kind in self.wanted if kind not in left_out]
+        return self._encoder.mtdata2(sample, wanted, self._count)
 
     def _reply(self, mid: int, data: bytes) -> bytes:
         match mid:
@@ -152,8 +161,11 @@ class XsensDevice:
         taken = {k: rate if rate == _EVERY else min(max(rate, 1), self._most_hz) for k, rate in able.items()}
         self.wanted = list(taken)
         self.rate_hz = float(max((rate for rate in taken.values() if rate != _EVERY), default=self.rate_hz))
+        self._rates = {kind: rate for kind, rate in taken.items() if rate < self.rate_hz}
+        self._rarer = {kind: Pace() for kind in self._rates}
         return b"".join(kind.to_bytes(2) + rate.to_bytes(2) for kind, rate in taken.items())
 
     _able = frozenset(
-        (PACKET_COUNTER, TIME_FINE, ACCELERATION, RATE_OF_TURN, MAGNETIC_FIELD, QUATERNION, STATUS_WORD)
+        (PACKET_COUNTER, TIME_FINE, STATUS_WORD, TEMPERATURE)
+        + (ACCELERATION, RATE_OF_TURN, MAGNETIC_FIELD, QUATERNION)
     )
