@@ -52,6 +52,7 @@ class Session:
         self.log: list[Asked] = []
         self.stores: dict[str, SensorStore] = {}
         self.biases: dict[str, GyroBias] = {}  # known before the walk, by sensor
+        self._remembered: dict[str, str] = {}  # when they were found, in words
         self._memory = Memory(budget_bytes, self.stores)
         self.applying = Applying(settings, self.stores, self.biases, self._memory, epoch)
         self._beside = Beside(truth, rod_m, epoch)
@@ -163,6 +164,7 @@ class Session:
         if known.sensor in self.stores:
             raise InputError(f"gyro bias of {known.sensor}: its walk has begun, expected before")
         self.biases[known.sensor] = GyroBias(known.rate_b, known.doubt_radps)
+        self._remembered[known.sensor] = known.source
         self.applying.note(asked, f"{known.sensor}: gyro bias remembered, {known.source}")
 
     def _restart(self, asked: Asked) -> None:
@@ -208,6 +210,7 @@ class Session:
             budget_bytes=self._memory.budget_bytes,
             epoch=self.epoch,
             own=beside.own(main),
+            remembered=dict(self._remembered),
             pendulum=beside.pendulum(main, stores),
         )
 

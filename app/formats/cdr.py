@@ -1,4 +1,4 @@
-"""Heart: three ROS 2 messages as CDR, each packed by one fixed struct: Imu, MagneticField, PoseStamped.
+"""Heart: ROS 2 messages as CDR, each packed by one struct: Imu, MagneticField, Temperature, PoseStamped.
 
 Little-endian, plain CDR (version 1): four bytes of encapsulation, a header (stamp, frame), doubles.
 """
@@ -46,6 +46,7 @@ float64 z
 """
 IMU = "sensor_msgs/msg/Imu"
 MAGNETIC_FIELD = "sensor_msgs/msg/MagneticField"
+TEMPERATURE = "sensor_msgs/msg/Temperature"
 POSE = "geometry_msgs/msg/PoseStamped"
 #: Name of a message → its definition, as other tools need it to read the doubles.
 DEFINITIONS = {
@@ -57,6 +58,7 @@ DEFINITIONS = {
     + _VECTOR,
     MAGNETIC_FIELD: "std_msgs/Header header\ngeometry_msgs/Vector3 magnetic_field\n"
     "float64[9] magnetic_field_covariance" + _HEADER + _VECTOR,
+    TEMPERATURE: "std_msgs/Header header\nfloat64 temperature\nfloat64 variance" + _HEADER,
     POSE: "std_msgs/Header header\ngeometry_msgs/Pose pose" + _HEADER + _POINT + _QUATERNION,
 }
 
@@ -133,6 +135,14 @@ def microtesla(doubles: Floats) -> Floats:
     """Field [n, 3] in µT of doubles [n, 12]."""
     field: Floats = doubles[:, :3] * 1e6
     return field
+
+
+def temperature(stamp_ns: int, frame: str, celsius: float) -> bytes:
+    """``sensor_msgs/Temperature``, °C; its variance is unknown: 0."""
+    return _pack(stamp_ns, frame, (celsius, 0.0))
+
+
+TEMPERATURE_DOUBLES = 2
 
 
 def pose(stamp_ns: int, frame: str, position_n: Vector, q_nb: Quaternion) -> bytes:

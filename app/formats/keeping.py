@@ -23,6 +23,7 @@ ORDERS = "/stridescope/orders"
 MARKERS = "/stridescope/markers"
 EVENTS = "/stridescope/events"
 IMU, FIELD, EXTRA, POSE, STRIDES = "imu", "magnetic_field", "extra", "pose", "strides"
+TEMPERATURE = "temperature"
 STATE, WAY = "state", "trail"
 FRAME_N = "ned"
 
@@ -39,6 +40,7 @@ class _Channels(NamedTuple):
     imu: int
     field: int
     extra: int
+    temperature: int
     pose: int
     strides: int
     state: int
@@ -106,6 +108,13 @@ class Keeper:
         """Something that happened to the recording: samples that could not be kept, its end."""
         self._say(EVENTS, host_ns, journal.to_json({"event": what, **figures}))
 
+    def temperature(self, sensor: str, host_ns: int, celsius: float) -> None:
+        """What a sensor's thermometer reads by now."""
+        channels = self._sensors.get(sensor) or self._sensor(sensor)
+        log_ns = host_ns + self._clock_ns
+        data = cdr.temperature(log_ns, sensor, celsius)
+        self.mcap.add(channels.temperature, 0, log_ns, log_ns, data)
+
     def pose(self, sensor: str, host_ns: int, position_n: Vector, q_nb: Quaternion) -> None:
         """Where the main track has a foot, as drawn."""
         channels = self._sensors.get(sensor)
@@ -161,6 +170,7 @@ class Keeper:
             field=self._ros(topic(FIELD), cdr.MAGNETIC_FIELD, about | {"kind": FIELD}),
             extra=self._json(topic(EXTRA), "Extra", "Of a sample, what the others cannot say.",
                              **about, kind=EXTRA),
+            temperature=self._ros(topic(TEMPERATURE), cdr.TEMPERATURE, about | {"kind": TEMPERATURE}),
             pose=self._ros(topic(POSE), cdr.POSE, about | {"kind": POSE}),
             strides=self._json(topic(STRIDES), "Stride", "From one initial contact to the next.",
                                **about, kind=STRIDES),

@@ -70,6 +70,7 @@ class Kept:
     states: tuple[_Told, ...] = ()
     ways: tuple[_Told, ...] = ()
     messages: dict[str, int] = field(default_factory=dict)  # by topic
+    temperatures: tuple[tuple[int, str, float], ...] = ()  # place, sensor, °C
 
 
 def read(name: str, data: bytes) -> Recording:
@@ -98,6 +99,8 @@ def _want(channel: mcap.Channel) -> Doubles | bool:
         return Doubles(cdr.IMU_DOUBLES, cdr.IMU_COLUMNS)
     if kind == keeping.FIELD:
         return Doubles(cdr.MAGNETIC_DOUBLES, (0, 1, 2))
+    if kind == keeping.TEMPERATURE:
+        return Doubles(cdr.TEMPERATURE_DOUBLES, (0,))
     return kind not in (keeping.POSE, keeping.STRIDES)
 
 
@@ -122,8 +125,20 @@ def _kept(contents: Contents) -> Kept:
         closed=contents.closed,
         states=_told(contents, keeping.STATE),
         ways=_told(contents, keeping.WAY),
+        temperatures=_temperatures(contents),
         messages={topic: len(found.place) for topic, found in topics.items() if len(found.place)},
     )
+
+
+def _temperatures(contents: Contents) -> tuple[tuple[int, str, float], ...]:
+    """What the sensors' thermometers read, in the file's order."""
+    found = []
+    for number, channel in contents.channels.items():
+        about, own = dict(channel.metadata), contents.gathered[number]
+        if about.get("kind") == keeping.TEMPERATURE and "sensor" in about and len(own.place):
+            read = zip(own.place.tolist(), own.doubles[:, 0].tolist(), strict=True)
+            found += [(place, about["sensor"], celsius) for place, celsius in read if math.isfinite(celsius)]
+    return tuple(sorted(found))
 
 
 def _told(contents: Contents, kind: str) -> tuple[_Told, ...]:
@@ -326,6 +341,11 @@ def _journal(
         markers=tuple((float(elapsed_ns[max(place - 1, 0)]) * 1e-9, text) for place, text in marks),
         states=counted(found.states),
         ways=counted(found.ways),
+        temperatures=tuple(
+            (int(np.searchsorted(merged, place)), sensor, celsius)
+            for place, sensor, celsius in found.temperatures
+            if place >= begin
+        ),
     )
 
 

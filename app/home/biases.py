@@ -17,6 +17,8 @@ log = logging.getLogger(__name__)
 MOST_BYTES = 4096
 #: No gyro is so far off, rad/s.
 MOST_RADPS = 1.0
+#: No sensor is so hot or cold, °C.
+MOST_C = 200.0
 
 
 class Remembered(NamedTuple):
@@ -26,6 +28,7 @@ class Remembered(NamedTuple):
     bias: GyroBias
     made: str
     calibrated: str = ""  # when the calibration was made that the samples were corrected by; empty: none
+    temperature_c: float | None = None  # the sensor's then, where it tells it
 
 
 def path_of(key: str) -> Path:
@@ -59,6 +62,7 @@ def to_json(found: Remembered) -> str:
         "doubt_radps": found.bias.doubt_radps,
         "made": found.made,
         "calibrated": found.calibrated,
+        "temperature_c": found.temperature_c,
     }
     return json.dumps(content, ensure_ascii=False, indent=1)
 
@@ -76,7 +80,14 @@ def from_json(text: str) -> Remembered | None:
     if rate is None or doubt is None or min(doubt) <= 0.0 or not all(isinstance(word, str) for word in words):
         return None
     sensor, made, calibrated = (str(word) for word in words)
-    return Remembered(sensor, GyroBias(rate, doubt), made, calibrated)
+    return Remembered(sensor, GyroBias(rate, doubt), made, calibrated, _degrees(content.get("temperature_c")))
+
+
+def _degrees(value: object) -> float | None:
+    """A temperature; files from before it was kept have none."""
+    if type(value) not in (int, float) or not isinstance(value, int | float):
+        return None
+    return float(value) if abs(value) < MOST_C else None
 
 
 def _vector(value: object) -> Vector | None:

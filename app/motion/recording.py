@@ -60,6 +60,7 @@ class Journal:
     markers: tuple[tuple[float, str], ...] = ()  # seconds from the first sample, text
     states: tuple[tuple[int, str, bytes], ...] = ()
     ways: tuple[tuple[int, str, bytes], ...] = ()
+    temperatures: tuple[tuple[int, str, float], ...] = ()  # samples before it, sensor, °C
 
 
 @dataclass(frozen=True, eq=False)

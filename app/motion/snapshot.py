@@ -144,4 +144,5 @@ class Snapshot:
     #: estimated and true, rad: [k, 4].
     errors: Mapping[str, Floats] = field(default_factory=dict)
     own: Mapping[str, OwnView] = field(default_factory=dict)  # of sensors that tell their orientation
+    remembered: Mapping[str, str] = field(default_factory=dict)  # whose gyro bias was known: found when
     pendulum: PendulumView | None = None  # the sensor hangs on a rod: this is no walk

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import logging
+import math
 import os
 import shutil
 import tempfile
@@ -37,6 +38,8 @@ CHUNK_S = 0.2
 MOST_WAITING = 150_000
 #: Room for the end of a recording on a full disk.
 RESERVE = 4 * 2**20
+#: Between two temperatures of a sensor, as far as they differ.
+WARMTH_S = 1.0
 #: A write that takes longer is told.
 SLOW_S = 1.0
 
@@ -71,6 +74,7 @@ class Recorder:
         self._ended_s: float | None = None
         self._over = threading.Event()
         self._known = _about(info)
+        self._warmth: dict[str, tuple[float, float]] = {}  # last recorded: when, °C
         about = self._known | {"profile": profile, "source": source, "spec": made_by or ""}
         self._keeper = Keeper(about, info.sensors, time.time_ns() - time.monotonic_ns(), key)
         try:
@@ -101,6 +105,14 @@ class Recorder:
         if about != self._known:
             self._known = about
             self._queue.append((Keeper.learnt, (time.monotonic_ns(), about)))
+        for sensor, celsius in info.temperatures.items():
+            self._warm(sensor, celsius)
+
+    def _warm(self, sensor: str, celsius: float) -> None:
+        now_s, (at_s, before) = time.monotonic(), self._warmth.get(sensor, (-math.inf, math.nan))
+        if celsius != before and now_s - at_s >= WARMTH_S:
+            self._warmth[sensor] = now_s, celsius
+            self._queue.append((Keeper.temperature, (sensor, time.monotonic_ns(), celsius)))
 
     def order(self, number: int, order: Order) -> None:
         """An order and its number, after it was taken."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 
 from app.limits import Limit, Value
@@ -58,9 +58,9 @@ def message(snapshot: Snapshot, status: Status) -> str:
     return ""
 
 
-def feet(snapshot: Snapshot, own: bool = False) -> str:
-    """A card per foot; ``own``: the walks by the sensors' own orientations are shown."""
-    cards = "".join(_card(foot) for foot in snapshot.main.feet)
+def feet(snapshot: Snapshot, own: bool = False, warmth: Mapping[str, float] | None = None) -> str:
+    """A card per foot; ``own``: the walks by the sensors' own orientations are seen; ``warmth``: their °C."""
+    cards = "".join(_card(foot, sensor(snapshot, foot.sensor, warmth or {})) for foot in snapshot.main.feet)
     note = ""
     if len(snapshot.main.feet) > 1:
         note = LINKED if snapshot.main.linked else UNLINKED
@@ -92,7 +92,7 @@ def legend(snapshot: Snapshot, own: bool = False) -> str:
     return f'<div class="ss-legend">{keys}</div>'
 
 
-def _card(foot: FootView) -> str:
+def _card(foot: FootView, of_sensor: str) -> str:
     error = foot.error_m
     known = ("Error to truth", *words.metres(error)) if error is not None else None
     tiles = [
@@ -109,7 +109,7 @@ def _card(foot: FootView) -> str:
     return (
         f'<div class="ss-card ss-{foot.role.value}"><div class="ss-card-head"><span class="ss-dot"></span>'
         f'{FEET[foot.role]}{trust(foot)}{badge(foot)}</div><div class="ss-tiles">{grid}</div>'
-        f"{toe(foot)}{compass(foot)}</div>"
+        f"{toe(foot)}{compass(foot)}{of_sensor}</div>"
     )
 
 
@@ -135,6 +135,16 @@ def compass(foot: FootView) -> str:
     if foot.compass.steady:
         word = "steady: it holds the heading" if foot.compass.holds else "steady"
     return f'<div class="ss-note">Magnetic field {word}.</div>'
+
+
+def sensor(snapshot: Snapshot, name: str, warmth: Mapping[str, float]) -> str:
+    """How warm it is, and how warm it was when the gyro bias was found that the walk began with."""
+    found, now = snapshot.remembered.get(name), warmth.get(name)
+    degrees = f"{words.number(now, 0)} °C"
+    if found is None:
+        return "" if now is None else f'<div class="ss-note">Sensor at {degrees}.</div>'
+    told = "" if now is None else f"; now {degrees}"
+    return f'<div class="ss-note">Gyro bias remembered {words.plain(found, 60)}{told}.</div>'
 
 
 def trust(foot: FootView) -> str:

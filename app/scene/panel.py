@@ -133,7 +133,9 @@ class Panel:
         """Words, figures and controls: at most ten times a second."""
         self._header.show(figures.header(status) + beat(time.time()))
         self._message.show(banner(status) + figures.message(snapshot, status))
-        self._feet.show(swinging.cards(snapshot, view["own"]) + told(status.reference))
+        self._feet.show(
+            swinging.cards(snapshot, view["own"], status.source.temperatures) + told(status.reference)
+        )
         self._phones[0].show("" if snapshot.main.feet else phones.code(status))
         self._phones[1].show(phones.code(status))
         self._soundness.show(snapshot, status)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 
 from app.motion.snapshot import FootView, PendulumView, Snapshot
 from app.rotation import pitch_of
@@ -10,9 +11,9 @@ from app.scene import figures, words
 from app.scene.figures import Compared, tile
 
 
-def cards(snapshot: Snapshot, own: bool = False) -> str:
-    """The figures of what is seen: a pendulum's, or a walk's (``own`` as for ``figures.feet``)."""
-    return card(snapshot.pendulum, snapshot) if snapshot.pendulum else figures.feet(snapshot, own)
+def cards(snapshot: Snapshot, own: bool = False, warmth: Mapping[str, float] | None = None) -> str:
+    """The figures of what is seen: a pendulum's, or a walk's (the rest as for ``figures.feet``)."""
+    return card(snapshot.pendulum, snapshot) if snapshot.pendulum else figures.feet(snapshot, own, warmth)
 
 
 def card(pendulum: PendulumView, snapshot: Snapshot) -> str:

@@ -11,7 +11,7 @@ from app.formats import mcap
 from app.formats.kept import Kept, kept, lost_seqs
 from app.formats.recover import Recovered
 from app.formats.recover import recover as recovered
-from app.motion.recording import Recording
+from app.motion.recording import Journal, Recording
 from app.outputs.files import beside, write_new
 from app.sources.files import read_bytes
 from app.sources.opening import open_recording
@@ -66,6 +66,7 @@ def _ours(recording: Recording, found: Kept) -> dict[str, Any]:
         "closed": found.closed,
         "began": None if began is None else time.strftime("%Y-%m-%dT%H:%M:%S", time.localtime(began)),
         "about": found.about,
+        "temperature_c": _temperatures(journal),
         "lost": {readings.sensor: lost_seqs(readings) for readings in found.readings},
         "messages": found.messages,
         "settings": asdict(journal.settings),
@@ -79,6 +80,22 @@ def _ours(recording: Recording, found: Kept) -> dict[str, Any]:
     }
 
 
+def _warmth(told: dict[str, Any], sensor: str) -> str:
+    read = told.get("temperature_c", {}).get(sensor)
+    return f", {read['first']:.1f} °C at first, {read['last']:.1f} °C at last" if read else ""
+
+
+def _temperatures(journal: Journal) -> dict[str, dict[str, float]]:
+    """What each sensor's thermometer read, °C; nothing of those that told nothing."""
+    read: dict[str, list[float]] = {}
+    for _, sensor, celsius in journal.temperatures:
+        read.setdefault(sensor, []).append(celsius)
+    return {
+        sensor: {"first": all_[0], "last": all_[-1], "least": min(all_), "most": max(all_)}
+        for sensor, all_ in read.items()
+    }
+
+
 def lines(told: dict[str, Any]) -> list[str]:
     """The same for a person."""
     text = [f"{told['recording']} ({told['format']}): {told['duration_s']:.1f} s"]
@@ -87,7 +104,7 @@ def lines(told: dict[str, Any]) -> list[str]:
         dropped = sum(figures["dropped"].values())
         text.append(
             f"  {sensor}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
-            f" {dropped} dropped, {figures['saturated']} saturated"
+            f" {dropped} dropped, {figures['saturated']} saturated{_warmth(told, sensor)}"
         )
     text += [f"  {sentence}" for sentence in told["assumed"]]
     if "began" in told:

@@ -78,6 +78,8 @@ async def _take(source: Source, recorder: Recorder) -> None:
             recorder.sample(sample)
             for due in saver.due(session) if taken % LOOK_AFTER == 0 else ():
                 recorder.estimate(*due)
+            if taken % LOOK_AFTER == 0:
+                recorder.learn(source.info)
             while source.replay and recorder.waiting > 10_000:  # as fast as possible is as fast as the disk
                 await asyncio.sleep(0.01)
         if not recorder.on:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import time
 from collections.abc import Callable
+from datetime import date
 
 from app.estimator.bias import learnt
 from app.home import biases, calibrations
@@ -14,6 +15,7 @@ from app.motion.source import SourceInfo
 from app.session import Session
 
 log = logging.getLogger(__name__)
+_MONTHS = ("Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec")
 
 
 class Remembering:
@@ -42,8 +44,7 @@ class Remembering:
             return None
         if found is None or found.calibrated != self._calibrated(sensor):
             return None
-        source = f"found {found.made[:10]}"
-        command = KnowBias(sensor, found.bias.rate_b, found.bias.doubt_radps, source)
+        command = KnowBias(sensor, found.bias.rate_b, found.bias.doubt_radps, found_when(found))
         self.told.append(Order(command, "remembered", time.monotonic_ns()))
         return self.told[-1]
 
@@ -59,9 +60,20 @@ class Remembering:
                 continue
             key = calibrations.key_of(info, sensor)
             try:
-                biases.save(biases.Remembered(key, bias, made, self._calibrated(sensor)))
+                warmth = info.temperatures.get(sensor)
+                biases.save(biases.Remembered(key, bias, made, self._calibrated(sensor), warmth))
             except InputError as error:
                 log.warning("%s", error)
+
+
+def found_when(found: biases.Remembered) -> str:
+    """``from 3 Nov 2026 at 24 °C``."""
+    try:
+        day = date.fromisoformat(found.made[:10])
+        when = f"{day.day} {_MONTHS[day.month - 1]} {day.year}"
+    except ValueError:
+        when = found.made[:10]
+    return f"from {when}" + ("" if found.temperature_c is None else f" at {found.temperature_c:.0f} °C")
 
 
 def remembers(info: SourceInfo) -> bool:

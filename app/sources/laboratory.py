@@ -21,7 +21,7 @@ class Laboratory(Replay):
     def __init__(self, recording: Recording, seed: int = 0, **playing: Any) -> None:
         """``seed``: of the errors that chance has a part in; ``playing``: as a ``Replay`` takes it."""
         super().__init__(recording, **playing)
-        self.info = replace(self.info, seed=seed)
+        self._info = replace(self._info, seed=seed)
         self._lab = Lab(seed)
         self.errors = asdict(PERFECT)
 

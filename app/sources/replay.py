@@ -12,6 +12,8 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import AsyncIterator, Mapping, Sequence
+from dataclasses import replace
+from operator import itemgetter
 from typing import Protocol
 
 from app.formats.wire.stream import Counters
@@ -105,7 +107,9 @@ class Replay:
         self.made_by = recording.spec
         self.counters: Mapping[str, Counters] = {}
         self.errors: Mapping[str, float] | None = None
-        self.info = source_info(recording, truth)
+        self._info = source_info(recording, truth)
+        self._warmth = recording.journal.temperatures if recording.journal else ()
+        self._warmth_told = 0  # of them, by ``info``
         self.speed = _checked_speed(speed)
         self.loop = loop
         self.paused = False
@@ -126,6 +130,16 @@ class Replay:
         self._jump: tuple[int, int] | None = None  # release up to this sample at once; the playhead then
         self._anchor = (self._clock.now_ns(), 0)  # host time, playhead
         self._news = asyncio.Event()
+
+    @property
+    def info(self) -> SourceInfo:
+        """What the recording says of itself, and what its sensors' thermometers read where it is."""
+        told = bisect_right(self._warmth, self._next, key=itemgetter(0))
+        if told != self._warmth_told:
+            self._warmth_told = told
+            warmth = {sensor: celsius for _, sensor, celsius in self._warmth[:told]}
+            self._info = replace(self._info, temperatures=warmth)
+        return self._info
 
     @property
     def settings(self) -> Settings | None:

@@ -47,6 +47,28 @@ def test_every_sample_comes_back_to_the_bit(samples, chunk) -> None:
     assert exact(kept.samples(kept.kept("x", write(samples, chunk)))) == exact(samples)
 
 
+@settings(max_examples=40)
+@given(st.lists(st.tuples(st.sampled_from(["left", "right"]), st.floats(-50, 125)), max_size=8), st.data())
+def test_every_temperature_comes_back_between_its_samples(told, data) -> None:
+    samples, made = random_samples(20), keeper()
+    written = made.begin(0)
+    places = sorted(data.draw(st.integers(0, 20)) for _ in told)
+    waiting = list(zip(places, told, strict=True))
+    for i, sample in enumerate([*samples, None]):
+        while waiting and waiting[0][0] == i:
+            _, (sensor, celsius) = waiting.pop(0)
+            made.temperature(sensor, 5_000_000 * i, celsius)
+        if sample is not None:
+            made.sample(sample)
+        written += made.chunk() if i % 6 == 0 else b""
+    written += made.end()
+    recording = read("x", written)
+    assert recording.journal is not None
+    found = sorted(recording.journal.temperatures)
+    assert found == sorted((place, *one) for place, one in zip(places, told, strict=True))
+    assert exact(kept.samples(kept.kept("x", written))) == exact(samples)
+
+
 def test_a_recording_has_the_samples_in_columns_and_their_order() -> None:
     samples = random_samples(100)
     recording = read("x.mcap", write(samples))

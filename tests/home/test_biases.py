@@ -50,7 +50,24 @@ numbers = st.floats(-0.9, 0.9)
 doubts = st.floats(1e-9, 0.9)
 
 
-@given(st.text(), st.tuples(numbers, numbers, numbers), st.tuples(doubts, doubts, doubts), st.text())
-def test_any_bias_comes_back(sensor: str, rate: tuple, doubt: tuple, made: str) -> None:
-    found = Remembered(sensor, GyroBias(rate, doubt), made)
+@given(
+    st.text(),
+    st.tuples(numbers, numbers, numbers),
+    st.tuples(doubts, doubts, doubts),
+    st.text(),
+    st.none() | st.floats(-50, 125),
+)
+def test_any_bias_comes_back(
+    sensor: str, rate: tuple, doubt: tuple, made: str, celsius: float | None
+) -> None:
+    found = Remembered(sensor, GyroBias(rate, doubt), made, "", celsius)
     assert biases.from_json(biases.to_json(found)) == found
+
+
+@pytest.mark.parametrize("warmth", ['"hot"', "true", "1e9", "NaN", "null", "[]"])
+def test_a_file_without_a_temperature_is_a_bias_all_the_same(warmth: str) -> None:
+    text = biases.to_json(FOUND).replace('"temperature_c": null', f'"temperature_c": {warmth}')
+    assert biases.from_json(text) == FOUND
+    older = text.replace(f',\n "temperature_c": {warmth}', "")
+    assert "temperature" not in older
+    assert biases.from_json(older) == FOUND

@@ -10,6 +10,7 @@ import sys
 import textwrap
 import time
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -57,6 +58,26 @@ def test_what_was_handed_over_is_in_the_file(tmp_path: Path) -> None:
     assert recorder.path.name.endswith("_papers_demo.mcap")
     assert not recorder.state.on
     assert recorder.state.size_bytes == recorder.path.stat().st_size
+
+
+def test_a_temperature_is_kept_when_it_changes_and_once_a_second(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    now_s = [100.0]
+    monkeypatch.setattr(time, "monotonic", lambda: now_s[0])
+    recorder = a_recorder(tmp_path)
+    for celsius in (24.0, 24.5, 24.5, 25.0, 25.0):
+        for sample in random_samples(2):
+            recorder.sample(sample)
+        recorder.learn(replace(INFO, temperatures={"left": celsius}))
+        now_s[0] += 0.6
+    recorder.close(20.0)
+    told = found_in(recorder.path).temperatures
+    assert [(sensor, celsius) for _, sensor, celsius in told] == [
+        ("left", 24.0),
+        ("left", 24.5),
+        ("left", 25.0),
+    ]
 
 
 def test_two_recordings_of_one_second_are_two_files(tmp_path: Path) -> None:

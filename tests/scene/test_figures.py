@@ -84,6 +84,18 @@ def test_two_feet_are_said_not_to_be_linked() -> None:
     assert "not linked" not in figures.feet(fakes.snapshot(9.7))
 
 
+def test_a_sensor_tells_how_warm_it_is_and_was() -> None:
+    snapshot = fakes.snapshot(9.7)
+    sensor = snapshot.main.feet[0].sensor
+    assert "°C" not in figures.feet(snapshot)
+    assert "Sensor at 31 °C." in figures.feet(snapshot, warmth={sensor: 31.2})
+    known = replace(snapshot, remembered={sensor: "from 3 Nov 2026 at 24 °C"})
+    told = "Gyro bias remembered from 3 Nov 2026 at 24 °C"
+    assert f"{told}; now 31 °C." in figures.feet(known, warmth={sensor: 31.2})
+    assert f"{told}." in figures.feet(known)
+    assert "<img" not in figures.feet(replace(snapshot, remembered={sensor: EVIL}))
+
+
 def test_the_difference_is_the_candidates_minus_the_mains() -> None:
     snapshot = fakes.snapshot(12.9, candidate=True)
     assert snapshot.candidate is not None

@@ -67,7 +67,7 @@ def test_what_cannot_be_is_one_line(tmp_path: Path, capsys, wrong: list[str]) ->
     assert capsys.readouterr().err.count("\n") == 1
 
 
-def test_a_sensor_keeps_its_name_number_and_orientation_in_its_recording(tmp_path: Path) -> None:
+def test_a_sensor_keeps_its_name_warmth_and_orientation_in_its_recording(tmp_path: Path, capsys) -> None:
     """They are known only once it has answered; its orientation is walked by in a replay as it was live."""
     command = [sys.executable, "-m", "app", "emulate", "mip", "--source", "sim:walk?still_s=1&strides=3"]
     with subprocess.Popen(command, stdout=subprocess.PIPE, text=True) as sensor:
@@ -79,6 +79,13 @@ def test_a_sensor_keeps_its_name_number_and_orientation_in_its_recording(tmp_pat
     (path,) = tmp_path.glob("*.mcap")
     recording = load(path)
     assert recording.serials["foot"].startswith("MicroStrain/HBK MIP ")
+    assert recording.journal is not None
+    (_, whose, celsius), *_ = recording.journal.temperatures
+    assert whose == "foot"
+    assert 24.0 <= celsius < 24.5
+    capsys.readouterr()
+    assert main(["info", str(path)]) == 0
+    assert "24.0 °C at first" in capsys.readouterr().out
     said = "; ".join(recording.assumed)
     assert "read as MicroStrain/HBK MIP at 115200 baud" in said
     assert "firmware" in said

@@ -17,7 +17,7 @@ from app.motion.source import SourceInfo
 from app.session import Session
 from app.settings import Settings
 from app.shell import batch
-from app.shell.remembering import Remembering
+from app.shell.remembering import Remembering, found_when
 from tests.estimator.walks import foot, one_by_one, rows_of
 
 KALMAN = Settings(estimator="kalman")
@@ -53,6 +53,20 @@ def test_a_walk_is_remembered_by_the_next_of_the_same_sensor_and_calibration() -
     assert "gyro bias remembered" in again.applying.changes[0].what
     assert not walked(live(calibrated="2026-11-01")).biases
     assert not walked(live(info=SourceInfo("serial:/dev/ttyUSB0", "GX1", serials={"foot": "99"}))).biases
+
+
+def test_it_says_when_and_how_warm_the_sensor_was() -> None:
+    warm = replace(LIVE, temperatures={"foot": 24.3})
+    live(info=warm).keep(walked(live(info=warm)))
+    kept = biases.load("1234")
+    assert kept is not None
+    assert kept.temperature_c == 24.3
+    assert found_when(kept._replace(made="2026-11-03T10:00:00+0000")) == "from 3 Nov 2026 at 24 °C"
+    assert found_when(kept._replace(made="2026-11-03", temperature_c=None)) == "from 3 Nov 2026"
+    assert found_when(kept._replace(made="long ago", temperature_c=None)) == "from long ago"
+    snapshot = walked(live()).snapshot()
+    assert snapshot.remembered["foot"].endswith(" at 24 °C")
+    assert not walked(live(info=replace(LIVE, serials={"foot": "99"}))).snapshot().remembered
 
 
 def test_a_recording_neither_teaches_nor_is_told() -> None:

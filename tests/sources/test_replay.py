@@ -4,11 +4,13 @@ from itertools import pairwise
 
 import pytest
 
+from app.formats.reading import read
 from app.motion.basics import InputError
 from app.motion.commands import Loop, Pause, RestartHere, Seek, Speed, Step
 from app.motion.samples import Sample
 from app.sources.replay import HostClock, Replay
 from app.sources.source import Item
+from tests.formats.walks import keeper, random_samples
 
 HUNDRED_HZ = ("foot", list(range(0, 2000, 10)))  # 200 samples, 1.99 s
 
@@ -320,3 +322,26 @@ def test_what_it_says_of_itself(recording_of, clock) -> None:
     assert info.rate_hz == pytest.approx(100)
     assert dict(info.sensors) == {"left": "left", "right": "right"}
     assert info.duration_s == pytest.approx(0.025)
+
+
+def test_what_the_thermometers_read_is_told_where_the_replay_is(clock) -> None:
+    made = keeper()
+    written = made.begin(0)
+    for i, sample in enumerate(random_samples(40)):
+        if i in (4, 20, 21):
+            made.temperature("left" if i < 21 else "right", sample.host_ns, 20.0 + i)
+        made.sample(sample)
+    replay = Replay(read("x", written + made.end()), speed=0.0, clock=clock)
+
+    async def test() -> None:
+        stream = aiter(replay)
+        assert replay.info.temperatures == {}
+        await take(stream, 10)
+        assert replay.info.temperatures == {"left": 24.0}
+        await take(stream, 30)
+        assert replay.info.temperatures == {"left": 40.0, "right": 41.0}
+        replay.control(Seek(0.05))
+        assert (await take(stream, 2))[0] == RestartHere()
+        assert replay.info.temperatures == {}
+
+    run(test)

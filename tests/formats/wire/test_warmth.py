@@ -215,7 +215,9 @@ def test_a_sensor_without_a_thermometer_is_started_all_the_same(device: str) -> 
     def stubborn(data: bytes) -> bytes:
         if (b"\x14" in data[6:] and device == "mip" and data[2] == 0x0C) or b"\x08\x10" in data:
             refused.append(data)
-            return mip.packet(0x0C, (0xF1, bytes([0x0F, 3]))) if device == "mip" else xsens.message(0x42, b"!")
+            return (
+                mip.packet(0x0C, (0xF1, bytes([0x0F, 3]))) if device == "mip" else xsens.message(0x42, b"!")
+            )
         return receive(data)
 
     model.receive = stubborn  # type: ignore[method-assign]
