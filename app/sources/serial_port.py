@@ -231,6 +231,7 @@ class SerialPort(Live):
             for host_ns, data in arrived:
                 if self._take(host_ns, data):
                     sample_s = time.monotonic()
+            self._ask_its_temperature(port)
             if time.monotonic() - sample_s > FRUITLESS_S:
                 raise PortLostError(f"{port.path}: what comes makes no samples: starting the sensor anew")
 
