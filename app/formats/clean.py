@@ -25,8 +25,9 @@ _LONGEST_NS = 2**53  # 104 days: beyond it ELAPSED_NS would not be exact
 _MOST = 1e6  # m/s², rad/s or µT; no sensor reads that, and its square would spoil every sum
 
 
-#: A clock that fell back is believed after so many stamps that follow each other, as live.
-FELL_BACK = 8
+#: A clock that fell back is believed after so many stamps that follow each other, as live. At a file's end
+#: fewer have to do, where they are further back than anything comes late.
+FELL_BACK, AT_THE_END = 8, 2
 
 
 class SetBack(NamedTuple):
@@ -65,7 +66,7 @@ def told_on(raw: RawFoot) -> tuple[RawFoot, tuple[SetBack, ...]]:
     Stamps that are merely late (fewer than ``FELL_BACK`` in a row) stay as they are.
     """
     at = np.flatnonzero(raw.stamps_ns != NO_STAMP)
-    if len(at) < FELL_BACK:
+    if len(at) <= AT_THE_END:
         return raw, ()
     stamps = raw.stamps_ns[at]
     added = np.zeros(len(at), np.int64)
@@ -73,7 +74,7 @@ def told_on(raw: RawFoot) -> tuple[RawFoot, tuple[SetBack, ...]]:
     for fall in _falls(stamps).tolist():
         latest_ns = max(latest_ns, int(stamps[begin:fall].max()))
         begin, by_ns = fall, latest_ns - int(stamps[fall])
-        if stamps[fall + FELL_BACK - 1] <= latest_ns and passed_ns + by_ns < _MOST_NS:
+        if stamps[min(fall + FELL_BACK, len(at)) - 1] <= latest_ns and passed_ns + by_ns < _MOST_NS:
             found.append(SetBack((latest_ns + passed_ns - int(stamps[0])) * 1e-9, by_ns * 1e-9))
             added[fall] = by_ns + GAP_NS + 1
             passed_ns, latest_ns = passed_ns + by_ns + GAP_NS + 1, int(stamps[fall])
@@ -89,10 +90,14 @@ def told_on(raw: RawFoot) -> tuple[RawFoot, tuple[SetBack, ...]]:
 def _falls(stamps: Ints) -> Ints:
     """Where a stamp is not later than the one before, and the next ones follow it closely."""
     steps = np.diff(stamps)
-    near = np.concatenate([[0], np.cumsum((steps > 0) & (steps <= GAP_NS))])
+    small = (steps > 0) & (steps <= GAP_NS)
+    near = np.concatenate([[0], np.cumsum(small)])
     run = FELL_BACK - 1
     follow = near[run:] - near[:-run] == run  # from each stamp the next ``run`` steps
-    return np.flatnonzero(follow[1:] & (steps[: len(follow) - 1] <= 0)) + 1
+    falls = np.flatnonzero(follow[1:] & (steps[: max(len(follow) - 1, 0)] <= 0)) + 1
+    end = np.flatnonzero(~small)[-1:] + 1  # from here on all follow closely, to the last
+    few = (len(stamps) - end >= AT_THE_END) & (len(stamps) - end < FELL_BACK) & (steps[end - 1] < -GAP_NS)
+    return np.concatenate([falls, end[few]])
 
 
 def without_lone_leaps(raw: RawFoot) -> tuple[RawFoot, int]:

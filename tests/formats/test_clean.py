@@ -104,6 +104,21 @@ def test_behind_a_clock_that_was_set_back_every_row_counts(back_ns: int, at: int
     assert set_back == pytest.approx(((at - 1) * 0.01, back_ns * 1e-9 - 0.01))
 
 
+@pytest.mark.parametrize("left", [2, 3, 7])
+@pytest.mark.parametrize("before", [2, 3, 100])
+def test_a_few_rows_at_the_end_behind_a_clock_set_back_count(before: int, left: int) -> None:
+    stamps = [10**12 + i * 10_000_000 for i in range(before)] + [i * 10_000_000 for i in range(left)]
+    samples, set_back = clean(raw(stamps))
+    assert (len(samples), samples.dropped) == (before + left, {})
+    assert len(set_back) == 1
+    assert samples.matrix[before, 0] - samples.matrix[before - 1, 0] == GAP_NS + 1
+
+
+@pytest.mark.parametrize("stamps", [[10**12, 10**12 + 10, 5], [0, 10, 20, 5, 6], [0, 10, 10**9, 20, 15]])
+def test_a_lone_row_at_the_end_and_those_a_little_late_stay_late(stamps: list[int]) -> None:
+    assert clean(raw(stamps))[1] == ()
+
+
 def test_set_back_time_and_again() -> None:
     stamps = [i % 20 * 10_000_000 for i in range(200)]
     samples, set_back = clean(raw(stamps))
