@@ -24,7 +24,7 @@ chromium: setup
 test: chromium
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
-	$(BIN)/mypy app tests tools $(wildcard benchmarks)
+	$(BIN)/python tools/warm.py & $(BIN)/mypy app tests tools $(wildcard benchmarks) && wait
 	$(BIN)/python -m pytest -n $(WORKERS) --dist worksteal
 
 bench: setup
