@@ -14,12 +14,16 @@ HERE = Path(__file__).parent
 def head(keys: dict[str, tuple[str, str]], resets: list[str]) -> str:
     """HTML for the page's ``<head>``; only our own files and viser's uuids go into it."""
     presses = {key: private.press(control, value) for key, (control, value) in keys.items()}
-    small = ",".join(f'[id="{uuid}"]' for uuid in resets)
-    ours = style().replace("[data-reset]", f":is({small})")
     script = (HERE / "page.js").read_text(encoding="utf-8").replace("KEY_PRESSES", json.dumps(presses))
     for name in ("present.js", "watching.js", "library.js"):
         script += (HERE / name).read_text(encoding="utf-8")
-    return f"<title>Stridescope</title><style>{ours}</style><script>{script}</script>"
+    script += marks(resets)
+    return f"<title>Stridescope</title><style>{style()}</style><script>{script}</script>"
+
+
+def marks(resets: list[str]) -> str:
+    """The script that marks what the style sheet speaks of; ``resets`` are the ids of the reset buttons."""
+    return (HERE / "marks.js").read_text(encoding="utf-8").replace("RESETS", json.dumps(resets))
 
 
 def style() -> str:

@@ -12,6 +12,7 @@ from app.motion.basics import Quaternion, Vector
 from app.motion.door import GuiRule
 from app.scene import hud, private, town
 from app.scene.controls import Controls, Submit
+from app.scene.head import marks
 from app.scene.machines import MachineGraphs
 from app.scene.mover_panel import MoverPanel
 from app.scene.mover_view import beacon, in_view
@@ -123,5 +124,5 @@ def head(panel: MoverPanel, plan: Town, wall: tuple[int, int], kiosk: bool) -> s
     style = "".join((HERE / name).read_text(encoding="utf-8") for name in ("page.css", "mover.css"))
     names = ("mover_camera.js", "mover_hud.js", "present.js", "watching.js")
     script = "".join((HERE / name).read_text(encoding="utf-8") for name in names)
-    script = script.replace("MOVER_TOLD", json.dumps(told, separators=(",", ":")), 1)
+    script = script.replace("MOVER_TOLD", json.dumps(told, separators=(",", ":")), 1) + marks([])
     return f"<title>Stridescope</title><style>{style}</style><script>{script}</script>"

@@ -28,5 +28,9 @@ def test_title_style_and_script_are_closed(scene: Scene) -> None:
 
 def test_nothing_is_left_to_fill_in(scene: Scene) -> None:
     assert "KEY_PRESSES" not in scene.head
-    assert "[data-reset]" not in scene.head
+    assert "RESETS" not in scene.head
     assert "http" not in scene.head.replace("https://", "http://").split("<script>")[0]
+
+
+def test_no_word_that_changes_makes_a_browser_look_at_the_whole_page_again(scene: Scene) -> None:
+    assert ":has(" not in scene.head.split("<script>")[0]

@@ -213,6 +213,14 @@ def test_stale_wins_the_eye_and_markup_stays_text(house: House, page: Page) -> N
     assert page.title() == "Stridescope"
 
 
+def test_what_the_style_sheet_speaks_of_is_marked(house: House, page: Page) -> None:
+    for what in ("[data-ss-graphs] .uplot-container", "[data-ss-named] label", "[data-ss-reset] > button"):
+        page.locator(what).first.wait_for(state="attached", timeout=PATIENCE_MS)
+    buttons = page.locator("[data-ss-reset] > button").evaluate_all("(all) => all.map((one) => one.id)")
+    assert set(buttons) <= set(house.scene.panel.resets())  # those of the open tab
+    assert page.locator("[data-ss-resettable]").count() == len(buttons)
+
+
 def test_graphs_have_the_data(house: House, page: Page) -> None:
     house.shown.snapshot = fakes.snapshot(31.4)
     newest = """() => Object.values(window.__viserTestpoints.uplots ?? {}).map(u => {
