@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.motion.basics import Quaternion, Vector
 
 
@@ -29,7 +29,7 @@ def conjugate(q: Quaternion) -> Quaternion:
     return (q[0], -q[1], -q[2], -q[3])
 
 
-@kernel
+@part
 def normalise(q: Quaternion) -> Quaternion:
     """q / |q|; the identity where |q| is 0."""
     norm = math.sqrt(q[0] * q[0] + q[1] * q[1] + q[2] * q[2] + q[3] * q[3])
@@ -51,7 +51,7 @@ def rotate(q: Quaternion, v: Vector) -> Vector:
     )
 
 
-@kernel
+@part
 def exponential(rotation_vector: Vector) -> Quaternion:
     """The quaternion of a rotation vector (rad).
 

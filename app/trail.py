@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.motion.basics import Floats
 from app.motion.snapshot import Trail, TrailPiece
 
@@ -29,7 +29,7 @@ SLEEVE = 32
 EMPTY: Segments = np.empty((0, 2, 3), np.float32)
 
 
-@kernel
+@part
 def straight(sleeve: Floats, waiting: int, x: float, y: float, z: float, tolerance_m: float) -> bool:
     """Whether the points that wait lie within the tolerance of the segment ``sleeve[0]`` – (x, y, z)."""
     ax, ay, az = x - sleeve[0, 0], y - sleeve[0, 1], z - sleeve[0, 2]
@@ -58,8 +58,8 @@ def thin(
         if dx * dx + dy * dy + dz * dz < apart_m * apart_m:
             continue
         if waiting == SLEEVE or not straight(sleeve, waiting, x, y, z, tolerance_m):
-            kept[count] = sleeve[waiting]
-            sleeve[0] = sleeve[waiting]
+            for axis in range(3):
+                kept[count, axis] = sleeve[0, axis] = sleeve[waiting, axis]
             count += 1
             waiting = 0
         waiting += 1

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import part
 from app.motion.basics import Quaternion, Vector
 from app.rotation import conjugate, exponential, multiply, normalise, rotate
 
@@ -15,7 +15,7 @@ from app.rotation import conjugate, exponential, multiply, normalise, rotate
 VERTICAL = 1e-9
 
 
-@kernel
+@part
 def half_angle(sine: float, cosine: float) -> tuple[float, float]:
     """(cos, sin) of half an angle from the whole one's: (3.18), (3.21).
 
@@ -26,7 +26,7 @@ def half_angle(sine: float, cosine: float) -> tuple[float, float]:
     return math.sqrt((1.0 + cosine) / 2.0), (half_sine if sine >= 0.0 else -half_sine)
 
 
-@kernel
+@part
 def fqa_tilt(force_b: Vector) -> Quaternion:
     """Pitch ⊗ roll from the specific force at rest, (3.17)–(3.22). Zero force gives the identity."""
     norm = math.sqrt(force_b[0] ** 2 + force_b[1] ** 2 + force_b[2] ** 2)
@@ -42,7 +42,7 @@ def fqa_tilt(force_b: Vector) -> Quaternion:
     return multiply(pitch, (c, s, 0.0, 0.0))
 
 
-@kernel
+@part
 def fqa_yaw(tilt: Quaternion, field_b: Vector, north_rad: float) -> Quaternion:
     """Yaw from the magnetic field, (3.23)–(3.25), north lying at ``north_rad`` in *n*.
 
@@ -58,7 +58,7 @@ def fqa_yaw(tilt: Quaternion, field_b: Vector, north_rad: float) -> Quaternion:
     return (c, 0.0, 0.0, s)
 
 
-@kernel
+@part
 def own_yaw(tilt: Quaternion, q_nb: Quaternion) -> Quaternion:
     """The yaw that brings ``tilt`` nearest to the estimate: the twist about down of q ⊗ tilt*.
 
@@ -72,7 +72,7 @@ def own_yaw(tilt: Quaternion, q_nb: Quaternion) -> Quaternion:
     return (r[0] / norm, 0.0, 0.0, r[3] / norm)
 
 
-@kernel
+@part
 def static_quaternion(tilt: Quaternion, yaw: Quaternion, q_nb: Quaternion) -> Quaternion:
     """±q_s of the FQA: yaw ⊗ pitch ⊗ roll with the sign nearer the estimate.
 
@@ -86,7 +86,7 @@ def static_quaternion(tilt: Quaternion, yaw: Quaternion, q_nb: Quaternion) -> Qu
     return q
 
 
-@kernel
+@part
 def turn_between(rate_before_b: Vector, rate_b: Vector, dt_s: float) -> Quaternion:
     """The turn from one sample to the next: the mean of both rates, held, integrated exactly.
 
@@ -103,13 +103,13 @@ def turn_between(rate_before_b: Vector, rate_b: Vector, dt_s: float) -> Quaterni
     )
 
 
-@kernel
+@part
 def share_of(gain: float, dt_s: float) -> float:
     """How much of the error a gain removes in ``dt_s``: 1 − e^(−k·dt), exact and stable for any gain."""
     return 1.0 - math.exp(-gain * dt_s)
 
 
-@kernel
+@part
 def complementary(
     q_nb: Quaternion, turn: Quaternion, tilt: Quaternion, yaw: Quaternion, share: float
 ) -> Quaternion:

@@ -7,7 +7,7 @@ range is taken as 500 °/s until a rate well beyond it was read, unless a person
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator.covariance import add_variance_along
 from app.estimator.kalman_state import ATTITUDE_AT, KalmanState
 from app.motion.basics import Vector
@@ -25,7 +25,7 @@ SHORTEST_RUN = 3
 MOST_SLOPE, MOST_ANGLE = 600.0, 0.3
 
 
-@kernel
+@part
 def gyro_range(state: KalmanState, before: Vector) -> float:
     """The range by the rates read so far, rad/s; ``before`` is the sample before."""
     rates = (state.w0, state.w1, state.w2)
@@ -44,7 +44,7 @@ def gyro_range(state: KalmanState, before: Vector) -> float:
     return full
 
 
-@kernel
+@part
 def mind_clipping(state: KalmanState, before: Vector, dt_s: float) -> None:
     """For each gyro axis: doubt about it while it clips, the angle it lost when it stops.
 
@@ -67,7 +67,7 @@ def mind_clipping(state: KalmanState, before: Vector, dt_s: float) -> None:
         state.clip[axis, 1] = slope
 
 
-@kernel
+@part
 def mend(state: KalmanState, axis: int, slope: float, lasted_s: float, rate: float) -> None:
     """A parabola over the gap with these slopes at its ends would have turned s·D²/6 more."""
     angle = min(slope * lasted_s * lasted_s / 6.0, MOST_ANGLE)
@@ -79,7 +79,7 @@ def mend(state: KalmanState, axis: int, slope: float, lasted_s: float, rate: flo
     )
 
 
-@kernel
+@part
 def axis_in_n(state: KalmanState, axis: int) -> Vector:
     """A body axis in *n*."""
     q = (state.q0, state.q1, state.q2, state.q3)

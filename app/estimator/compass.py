@@ -11,7 +11,7 @@ import math
 
 import numpy as np
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.motion.basics import Floats
 from app.motion.estimate import Compass
 from app.rotation import rotate
@@ -26,25 +26,33 @@ LOOK_WIDTH = 5
 OPEN, STEADY, STRENGTH_STRAYS, DIP_STRAYS, DIRECTION_STRAYS, ELSEWHERE = 0, 1, 2, 3, 4, 5
 
 
-@kernel
+@part
 def field_of(x: float, y: float, z: float) -> tuple[float, float, float]:
     """Strength, dip below the horizon and direction (rad, clockwise from *n*'s x) of a field in *n*."""
     flat = math.hypot(x, y)
     return math.hypot(flat, z), math.atan2(z, flat), math.atan2(y, x)
 
 
-@kernel
+@part
 def apart(one_rad: float, other_rad: float) -> float:
     """From the other direction to the one, −π to π."""
     turn = one_rad - other_rad
     return math.atan2(math.sin(turn), math.cos(turn))
 
 
+@part
+def reach(looks: Floats, column: int) -> float:
+    """From the least to the largest of a column."""
+    least, most = looks[0, column], looks[0, column]
+    for i in range(1, FOOTPRINTS):
+        least, most = min(least, looks[i, column]), max(most, looks[i, column])
+    return float(most - least)
+
+
 @kernel
 def judge(looks: Floats) -> tuple[int, float]:
     """The verdict on ``looks`` [FOOTPRINTS, 5], and by how much what strays does: a share, or rad."""
-    north, east = looks[:, 3], looks[:, 4]
-    if math.hypot(north.max() - north.min(), east.max() - east.min()) < SPAN_M:
+    if math.hypot(reach(looks, 3), reach(looks, 4)) < SPAN_M:
         return OPEN, 0.0
     strength, strength2, dip, dip2, turned2 = 0.0, 0.0, 0.0, 0.0, 0.0
     _, _, middle = middle_of(looks)
@@ -63,7 +71,7 @@ def judge(looks: Floats) -> tuple[int, float]:
     return (DIRECTION_STRAYS if turns > DIRECTION_RAD else STEADY), turns
 
 
-@kernel
+@part
 def middle_of(looks: Floats) -> tuple[float, float, float]:
     """Strength, dip and direction of the looks' mean field; each counts for its direction alone alike."""
     x, y, z, east, north = 0.0, 0.0, 0.0, 0.0, 0.0
@@ -102,8 +110,10 @@ def add_look(looks: Floats, samples: Floats, rows: Floats) -> bool:
         x, y, z = x + turned[0], y + turned[1], z + turned[2]
     if count == 0 or not math.isfinite(x + y + z):
         return False
-    looks[:-1] = looks[1:]
-    look = looks[-1]
+    for i in range(FOOTPRINTS - 1):
+        for k in range(LOOK_WIDTH):
+            looks[i, k] = looks[i + 1, k]
+    look = looks[FOOTPRINTS - 1]
     look[0], look[1], look[2] = x / count, y / count, z / count
     look[3], look[4] = rows[-1, 0], rows[-1, 1]
     return True

@@ -7,13 +7,13 @@ Two parts more stand still: the floor's height, and the direction of magnetic no
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator.kalman_state import PARTS
 from app.motion.basics import Floats, Quaternion, Vector
 from app.rotation import rotate
 
 
-@kernel
+@part
 def propagate(P: Floats, q_nb: Quaternion, force_n: Vector, dt_s: float) -> None:
     """P ← F P Fᵀ over ``dt_s``: first the rows, then, as P is symmetric, the columns."""
     x, y, z = (
@@ -42,14 +42,14 @@ def propagate(P: Floats, q_nb: Quaternion, force_n: Vector, dt_s: float) -> None
             P[j, 6 + k] -= x[k] * P[j, 9] + y[k] * P[j, 10] + z[k] * P[j, 11]
 
 
-@kernel
+@part
 def add_variance(P: Floats, first: int, variance: float) -> None:
     """Noise on three parts of the error state, the same on each."""
     for k in range(3):
         P[first + k, first + k] += variance
 
 
-@kernel
+@part
 def add_variance_along(P: Floats, first: int, axis_n: Vector, variance: float) -> None:
     """Noise on three parts of the error state, along one axis only (or about it)."""
     for i in range(3):
@@ -57,7 +57,7 @@ def add_variance_along(P: Floats, first: int, axis_n: Vector, variance: float) -
             P[first + i, first + j] += variance * axis_n[i] * axis_n[j]
 
 
-@kernel
+@part
 def measure(
     P: Floats, shift: Floats, gain: Floats, part: int, less: int, away: float, variance: float
 ) -> tuple[float, float]:
@@ -84,7 +84,7 @@ def measure(
     return total, left
 
 
-@kernel
+@part
 def copy_part(P: Floats, part: int, into: int) -> None:
     """The error ``into`` is from here on what the error ``part`` is now."""
     for j in range(PARTS):

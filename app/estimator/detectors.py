@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator.gait import STANCE, gait_phase
 from app.estimator.kalman_state import (
     BIN_NS,
@@ -44,7 +44,7 @@ MOVES, STANDS, NEARLY, STARVED = 0, 1, 2, 3
 _ADAPTIVE, _SHOE, _ARED = int(Detector.ADAPTIVE), int(Detector.SHOE), int(Detector.ARED)
 
 
-@kernel
+@part
 def forget_gait(state: KalmanState) -> None:
     """Empty windows: a new segment."""
     state.ring_n = 0.0
@@ -55,7 +55,7 @@ def forget_gait(state: KalmanState) -> None:
     state.sure_ns = state.elapsed_ns
 
 
-@kernel
+@part
 def remember(state: KalmanState) -> int:
     """Put the newest sample into the ring; returns its place."""
     place = (int(state.ring_at) + 1) % RING
@@ -69,7 +69,7 @@ def remember(state: KalmanState) -> int:
     return place
 
 
-@kernel
+@part
 def window_statistic(state: KalmanState) -> tuple[float, float]:
     """T of the window that ends now, and its mean |ω|².
 
@@ -93,7 +93,7 @@ def window_statistic(state: KalmanState) -> tuple[float, float]:
     return (away + rates / count) / VARIANCE, rates / count
 
 
-@kernel
+@part
 def remember_gait(state: KalmanState) -> tuple[float, float]:
     """The newest sample into the bins; returns E, the gait's mean |ω|², and M, its least statistic."""
     at = int(state.bin_at)
@@ -115,7 +115,7 @@ def remember_gait(state: KalmanState) -> tuple[float, float]:
     return energy / count, least
 
 
-@kernel
+@part
 def stands(state: KalmanState, energy: float, least: float, rate2: float, dt_s: float) -> int:
     """Whether the foot has zero velocity now, by the detector chosen; notes the threshold it was held to.
 
@@ -137,7 +137,7 @@ def stands(state: KalmanState, energy: float, least: float, rate2: float, dt_s: 
     return STANDS if phase == STANCE else MOVES
 
 
-@kernel
+@part
 def adapts(state: KalmanState, energy: float, least: float) -> int:
     """The largest safe statistic of a stance grows with the energy of the gait: walking and running alike.
 

@@ -11,10 +11,10 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator.covariance import copy_part, measure
 from app.estimator.kalman_state import FLOOR_AT, FLOOR_MEASURE, HEIGHT_AT, KalmanState
-from app.estimator.taking import take_shift
+from app.estimator.taking import begin_shift, take_shift
 
 #: How footprints on one floor differ in height: the foot never stands twice the same (σ, m).
 FLOOR_NOISE = 0.01
@@ -24,7 +24,7 @@ LEVEL_SLOPE, SLOPE_SHARE = 0.025, 0.2
 SHORTEST_M = 0.3
 
 
-@kernel
+@part
 def stand_on_floor(state: KalmanState) -> None:
     """A swing is over: the foot is on the floor it was on, or on another one."""
     if state.same_floor_m == 0.0:
@@ -35,21 +35,21 @@ def stand_on_floor(state: KalmanState) -> None:
         begin_floor(state)
         state.floor_began = 1.0
         return
-    state.shift[:] = 0.0
+    begin_shift(state)
     state.totals[FLOOR_MEASURE], state.lefts[FLOOR_MEASURE] = measure(
         state.P, state.shift, state.gains[FLOOR_MEASURE], HEIGHT_AT, FLOOR_AT, -sunk, FLOOR_NOISE**2
     )
     take_shift(state)
 
 
-@kernel
+@part
 def begin_floor(state: KalmanState) -> None:
     """The floor is where the foot stands."""
     state.floor_z = state.pz
     copy_part(state.P, HEIGHT_AT, FLOOR_AT)
 
 
-@kernel
+@part
 def note_slope(state: KalmanState) -> None:
     """How the strides of late fell, beside the way they went; a step up or down is no slope."""
     way = math.hypot(state.px - state.from_x, state.py - state.from_y)

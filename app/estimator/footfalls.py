@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator import state as s
 from app.estimator.floor import stand_on_floor
 from app.estimator.gait import STANCE, SWING
@@ -25,7 +25,7 @@ AT_REST_MPS = 0.5
 SHORTEST_STRIDE_NS = 330_000_000
 
 
-@kernel
+@part
 def note_contact(state: KalmanState) -> bool:
     """Before an update: the first zero velocity of a swing under way is its contact. Says whether it is."""
     if state.moving == 0.0 or state.contact_row >= 0.0:
@@ -41,7 +41,7 @@ def note_contact(state: KalmanState) -> bool:
     return True
 
 
-@kernel
+@part
 def footfall(state: KalmanState, stood: bool) -> int:
     """After an update: the phase, and whether the swing behind is over: ``STRIDE``, or ``FLICKER``."""
     happened = 0
@@ -64,7 +64,7 @@ def footfall(state: KalmanState, stood: bool) -> int:
     return happened
 
 
-@kernel
+@part
 def finish(state: KalmanState) -> int:
     """The swing under way ended at its contact: note what the row's correction needs."""
     since_contact_ns = state.contact_ns - state.done_lift_ns - 1e9 * state.done_swing_s
@@ -79,7 +79,7 @@ def finish(state: KalmanState) -> int:
     return s.STRIDE if long and since_contact_ns >= SHORTEST_STRIDE_NS else s.FLICKER
 
 
-@kernel
+@part
 def end_footfalls(state: KalmanState) -> int:
     """A gap in time: a swing whose contact was seen is over, one cut short keeps its travel."""
     happened = finish(state) if state.contact_row >= 0.0 else 0

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import part
 from app.motion.basics import GaitPhase
 
 STANCE = float(GaitPhase.STANCE)
 SWING = float(GaitPhase.SWING)
 
 
-@kernel
+@part
 def gait_phase(
     phase: float,
     contrary_s: float,

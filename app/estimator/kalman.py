@@ -8,7 +8,7 @@ the middle of the detector's window, and the velocity of a standing foot is that
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator import state as s
 from app.estimator.attitude import fqa_tilt, fqa_yaw
 from app.estimator.clipping import mind_clipping
@@ -45,7 +45,7 @@ from app.estimator.kalman_state import (
 from app.estimator.north import begin_look, forget_field, look_at_field
 from app.estimator.papers import Reading
 from app.estimator.standing import begin_bias, begin_window, find_level, keep_standing, learn_bias
-from app.estimator.taking import take_shift
+from app.estimator.taking import begin_shift, forget_measurements, take_shift
 from app.motion.basics import Vector
 from app.rotation import exponential, from_yaw, multiply, normalise, rotate, yaw_of
 
@@ -75,13 +75,12 @@ UNFIT_SHARE, WORST_MISFIT = 0.25, 60.0
 GAP_SPEED = 1.0
 
 
-@kernel
+@part
 def step(state: KalmanState, reading: Reading) -> int:
     """One sample on. Returns what happened, a sum of the codes in ``state.py``. Time must go forward."""
     force_before, rate_before = (state.f0, state.f1, state.f2), (state.w0, state.w1, state.w2)
     happened, dt_s = receive(state, reading)
-    state.totals[:] = 0.0
-    state.floor_began, state.north_began = 0.0, 0.0
+    forget_measurements(state)
     place = remember(state)
     state.statistic_before = state.statistic
     state.statistic, rate2 = window_statistic(state)
@@ -115,7 +114,7 @@ def step(state: KalmanState, reading: Reading) -> int:
     return happened
 
 
-@kernel
+@part
 def receive(state: KalmanState, reading: Reading) -> tuple[int, float]:
     """The sample into the state; a gap in time ends the segment. Returns that, and seconds since the last."""
     happened = 0
@@ -139,7 +138,7 @@ def receive(state: KalmanState, reading: Reading) -> tuple[int, float]:
     return happened, dt_s
 
 
-@kernel
+@part
 def begin_segment(state: KalmanState) -> None:
     """Level is unknown from here on and nothing is integrated; the foot stays where it was."""
     state.levelled, state.standing, state.phase = 0.0, 0.0, STANCE
@@ -153,7 +152,7 @@ def begin_segment(state: KalmanState) -> None:
     forget_jolts(state)
 
 
-@kernel
+@part
 def level(state: KalmanState) -> None:
     """Tilt by FQA on the means of the still window so far, (3.17)–(3.22), and the heading there was."""
     if state.window_n == 0.0:
@@ -167,7 +166,7 @@ def level(state: KalmanState) -> None:
     state.q0, state.q1, state.q2, state.q3 = multiply(yaw, tilt)
 
 
-@kernel
+@part
 def begin_walk(state: KalmanState) -> None:
     """Level is found: gravity, a first bias, and doubts by how still the window was."""
     restless = state.window_statistic / state.window_n
@@ -188,7 +187,7 @@ def begin_walk(state: KalmanState) -> None:
     state.quiet_ns = state.elapsed_ns
 
 
-@kernel
+@part
 def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, dt_s: float) -> None:
     """Strapdown: the mean of both samples, turned at the half step; then P."""
     half = 0.5 * dt_s
@@ -227,7 +226,7 @@ def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, d
     add_variance(state.P, FORCE_AT, FORCE_WANDER**2 * dt_s)
 
 
-@kernel
+@part
 def note_motion(state: KalmanState, place: int) -> None:
     """What a zero velocity seen a little later will be held against: the velocity gained since, and the
     velocity a foot has that stands but rolls over its sole: ω × the sensor's height."""
@@ -241,7 +240,7 @@ def note_motion(state: KalmanState, place: int) -> None:
     state.ring[place, RING_GAIN + 2] = state.gained_z
 
 
-@kernel
+@part
 def seen_at(state: KalmanState) -> int:
     """The place in the ring of the oldest sample of this segment within ``SEEN_LATE_NS``."""
     newest = int(state.ring_at)
@@ -254,7 +253,7 @@ def seen_at(state: KalmanState) -> int:
     return place
 
 
-@kernel
+@part
 def is_confirmed(state: KalmanState, answer: int) -> bool:
     """How far the foot is from standing by its own account, into ``aways``; whether that fits the answer."""
     i = seen_at(state)
@@ -273,7 +272,7 @@ def is_confirmed(state: KalmanState, answer: int) -> bool:
     return answer == STANDS or state.misfit < MOST_MISFIT or hungry_s > GIVEN_UP_S
 
 
-@kernel
+@part
 def doubt_swing(state: KalmanState) -> None:
     """At a contact: how well the swing before fits the stance, over some swings; what P leaves out."""
     state.unfit += UNFIT_SHARE * (min(state.misfit, WORST_MISFIT) - state.unfit)
@@ -282,17 +281,17 @@ def doubt_swing(state: KalmanState) -> None:
         state.unknown_m2 += away2 * (0.5e-9 * (state.elapsed_ns - state.lift_ns)) ** 2
 
 
-@kernel
+@part
 def stance_variance(state: KalmanState) -> float:
     """σ² of a zero velocity: a poor stance says little."""
     return STANCE_NOISE**2 + STATISTIC_NOISE**2 * state.statistic
 
 
-@kernel
+@part
 def zero_velocity(state: KalmanState) -> None:
     """The foot stood in the middle of the window: three scalar measurements of its velocity then."""
     variance = stance_variance(state)
-    state.shift[:] = 0.0
+    begin_shift(state)
     for k in range(3):
         state.totals[k], state.lefts[k] = measure(
             state.P, state.shift, state.gains[k], VELOCITY_AT + k, -1, state.aways[k], variance
@@ -300,7 +299,7 @@ def zero_velocity(state: KalmanState) -> None:
     take_shift(state)
 
 
-@kernel
+@part
 def note_corrections(state: KalmanState, place: int) -> None:
     """Corrections up to this row, so that those still to come can be given to it."""
     state.ring[place, RING_P] = state.corrected_x

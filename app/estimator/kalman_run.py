@@ -7,7 +7,7 @@ contact is the cubic that joins them (a Wiener process bridged twice), and the a
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.estimator import state as s
 from app.estimator.corrections import Event
 from app.estimator.gait import STANCE, SWING
@@ -50,7 +50,7 @@ def run(
     return end, count
 
 
-@kernel
+@part
 def write_event(event: Floats, now: KalmanState, happened: int) -> None:
     """Which rows change, and by what, in the columns of ``Event``."""
     event[0], event[1], event[2], event[3] = happened, now.done_lift_row, now.done_contact_row, now.row - 1.0
@@ -69,7 +69,7 @@ def write_event(event: Floats, now: KalmanState, happened: int) -> None:
     event[_TURNED + 2] = now.turned_z - now.unturned_z
 
 
-@kernel
+@part
 def keep_event(event: Floats, rows: Floats, samples: Floats, state: Record) -> int:
     """Apply an event whose rows are all here, the last of them just made; 1 if more than that is to do."""
     first = int(event[3]) - rows.shape[0] + 1  # the number of row 0
@@ -101,7 +101,7 @@ def correct(rows: Floats, first_row: int, samples: Floats, event: Floats, state:
             along_stance(rows[i], now, int(last_row) - number)
 
 
-@kernel
+@part
 def along_swing(row: Floats, event: Floats, since_lift_s: float) -> None:
     """The cubic from the lift, where nothing changes, to the contact, where all of it does."""
     swing_s = event[5]
@@ -116,7 +116,7 @@ def along_swing(row: Floats, event: Floats, since_lift_s: float) -> None:
     turn_row(row, turn)
 
 
-@kernel
+@part
 def along_stance(row: Floats, now: KalmanState, back: int) -> None:
     """The corrections that came after this row, which is ``back`` rows behind the newest.
 
@@ -138,7 +138,7 @@ def along_stance(row: Floats, now: KalmanState, back: int) -> None:
     turn_row(row, turn)
 
 
-@kernel
+@part
 def turn_row(row: Floats, turn: Quaternion) -> None:
     """Turn a row's attitude in *n*."""
     row[6], row[7], row[8], row[9] = normalise(multiply(turn, (row[6], row[7], row[8], row[9])))

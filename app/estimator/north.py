@@ -8,7 +8,7 @@ footprints: each counts for little.
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator.compass import (
     DIP_RAD,
     DIRECTION_STRAYS,
@@ -26,7 +26,7 @@ from app.estimator.compass import (
 from app.estimator.covariance import copy_part, measure
 from app.estimator.kalman_state import NORTH_AT, NORTH_MEASURE, YAW_AT, KalmanState
 from app.estimator.state import Record
-from app.estimator.taking import take_shift
+from app.estimator.taking import begin_shift, take_shift
 from app.motion.basics import Vector
 from app.motion.estimate import Compass
 from app.rotation import rotate
@@ -37,7 +37,7 @@ LOOK_NOISE = 0.2
 MOST_SIGMAS = 2.0
 
 
-@kernel
+@part
 def look_at_field(state: KalmanState, field_b: Vector) -> None:
     """The foot stands: the field of this sample, in *n*, to those of the footprint."""
     if field_b[0] != field_b[0]:  # NaN: no magnetometer
@@ -47,20 +47,20 @@ def look_at_field(state: KalmanState, field_b: Vector) -> None:
     state.field_n += 1.0
 
 
-@kernel
+@part
 def forget_field(state: KalmanState) -> None:
     """A new segment: what the gyro kept before says nothing of after."""
     state.looks_n, state.north_known, state.verdict = 0.0, 0.0, OPEN
     begin_look(state)
 
 
-@kernel
+@part
 def begin_look(state: KalmanState) -> None:
     """A new footprint."""
     state.field_x, state.field_y, state.field_z, state.field_n = 0.0, 0.0, 0.0, 0.0
 
 
-@kernel
+@part
 def hold_heading(state: KalmanState) -> None:
     """A swing is over: this footprint's look beside the last ones; the heading by it, if all is steady."""
     if state.field_n == 0.0:
@@ -81,7 +81,7 @@ def hold_heading(state: KalmanState) -> None:
         keep_north(state, field_of(x, y, z))
 
 
-@kernel
+@part
 def begin_north(state: KalmanState) -> None:
     """North is where the steady field of the last footprints points."""
     state.north_strength, state.north_dip, state.north_at_rad = middle_of(state.looks)
@@ -91,7 +91,7 @@ def begin_north(state: KalmanState) -> None:
     state.P[NORTH_AT, NORTH_AT] += LOOK_NOISE * LOOK_NOISE / FOOTPRINTS
 
 
-@kernel
+@part
 def keep_north(state: KalmanState, field: Vector) -> None:
     """One look: the heading's error less north's, if this is the field it was and its direction is likely."""
     strength, dip, direction = field
@@ -104,7 +104,7 @@ def keep_north(state: KalmanState, field: Vector) -> None:
     if away * away > MOST_SIGMAS * MOST_SIGMAS * total:
         state.verdict, state.strays = DIRECTION_STRAYS, abs(away)
         return
-    state.shift[:] = 0.0
+    begin_shift(state)
     state.totals[NORTH_MEASURE], state.lefts[NORTH_MEASURE] = measure(
         P, state.shift, state.gains[NORTH_MEASURE], YAW_AT, NORTH_AT, away, variance
     )

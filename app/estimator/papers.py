@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator import state as s
 from app.estimator.attitude import complementary, fqa_tilt, fqa_yaw, share_of, turn_between
 from app.estimator.gait import STANCE, SWING, gait_phase
@@ -31,7 +31,7 @@ class Reading(NamedTuple):
     field_b: Vector  # NaN: no magnetometer
 
 
-@kernel
+@part
 def reading_at(samples: Floats, i: int) -> Reading:
     """Row ``i`` of a sample table [n, 10]."""
     return Reading(
@@ -50,7 +50,7 @@ class Aiding(NamedTuple):
     yaw: Quaternion  # from the magnetic field; zero: none
 
 
-@kernel
+@part
 def step(state: State, reading: Reading) -> int:
     """One sample on. Returns what happened, a sum of the codes in ``state.py``. Time must go forward."""
     force_before, rate_before = (state.fx, state.fy, state.fz), (state.wx, state.wy, state.wz)
@@ -67,7 +67,7 @@ def step(state: State, reading: Reading) -> int:
     return happened
 
 
-@kernel
+@part
 def observe(state: State, reading: Reading) -> tuple[int, float]:
     """What the gains do not touch: time, level, and the gait phase with its edges.
 
@@ -93,7 +93,7 @@ def observe(state: State, reading: Reading) -> tuple[int, float]:
     return happened, dt_s
 
 
-@kernel
+@part
 def find_edges(state: State, dt_s: float) -> int:
     """The gait machine, and where a swing began and ends.
 
@@ -129,7 +129,7 @@ def find_edges(state: State, dt_s: float) -> int:
     return happened
 
 
-@kernel
+@part
 def aid(state: State, reading: Reading, rate_before_b: Vector, dt_s: float) -> Aiding:
     """The static quaternion's parts by FQA, and the turn since the last sample."""
     turn = turn_between(rate_before_b, (state.wx, state.wy, state.wz), dt_s)
@@ -137,7 +137,7 @@ def aid(state: State, reading: Reading, rate_before_b: Vector, dt_s: float) -> A
     return Aiding(turn, tilt, measured_yaw(state, tilt, reading.field_b))
 
 
-@kernel
+@part
 def navigate(
     nav: Nav, state: State, happened: int, aiding: Aiding, share: float, force_before_b: Vector, dt_s: float
 ) -> None:
@@ -164,7 +164,7 @@ def navigate(
         stand(nav)
 
 
-@kernel
+@part
 def zero_velocity_update(nav: Nav, state: State) -> None:
     """(8)–(10): the velocity left at the end of a swing is ε·T; take ε out of the whole swing."""
     nav.from_x, nav.from_y, nav.from_z = nav.px, nav.py, nav.pz
@@ -173,14 +173,14 @@ def zero_velocity_update(nav: Nav, state: State) -> None:
     nav.px, nav.py, nav.pz = without_bias(raw, bias, state.end_swing_s)
 
 
-@kernel
+@part
 def stand(nav: Nav) -> None:
     """The foot stands: no velocity, no travel."""
     nav.vx, nav.vy, nav.vz = 0.0, 0.0, 0.0
     nav.sx, nav.sy, nav.sz = 0.0, 0.0, 0.0
 
 
-@kernel
+@part
 def end_segment(state: State) -> int:
     """A gap in time: what was under way ends here, and level is sought anew."""
     happened = s.SEGMENT
@@ -190,7 +190,7 @@ def end_segment(state: State) -> int:
     return happened
 
 
-@kernel
+@part
 def leave_segment(nav: Nav, state: State, happened: int) -> None:
     """Position stays where the segment left it (a swing cut short keeps its travel), heading too."""
     if happened & s.STRIDE:
@@ -201,7 +201,7 @@ def leave_segment(nav: Nav, state: State, happened: int) -> None:
     nav.heading = yaw_of((nav.q0, nav.q1, nav.q2, nav.q3))
 
 
-@kernel
+@part
 def level(nav: Nav, state: State) -> None:
     """FQA on the means of the still window so far; nothing before its first sample."""
     if state.rest_n == 0.0:
@@ -213,7 +213,7 @@ def level(nav: Nav, state: State) -> None:
     nav.q0, nav.q1, nav.q2, nav.q3 = multiply(yaw, tilt)
 
 
-@kernel
+@part
 def measured_yaw(state: State, tilt: Quaternion, field_b: Vector) -> Quaternion:
     """The FQA's yaw, or the zero quaternion where the magnetometer is off or missing."""
     if state.magnetometer == 0.0:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.estimator import state as s
 from app.estimator.corrections import correct
 from app.estimator.papers import reading_at, step
@@ -37,7 +37,7 @@ def run(
     return end, count
 
 
-@kernel
+@part
 def write_event(event: Floats, now: State, happened: int) -> None:
     """Which rows change, and by what, in the columns of ``Event``."""
     event[0], event[1], event[2], event[3] = happened, now.lift_row, now.end_row, now.row - 1.0
@@ -50,7 +50,7 @@ def write_event(event: Floats, now: State, happened: int) -> None:
         event[9], event[10], event[11] = now.from_x, now.from_y, now.from_z
 
 
-@kernel
+@part
 def keep_event(event: Floats, rows: Floats, samples: Floats) -> int:
     """Apply an event whose rows are all here, the last of them just made; 1 if more than that is to do."""
     first = int(event[3]) - rows.shape[0] + 1  # the number of row 0

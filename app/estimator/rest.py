@@ -10,7 +10,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator import state as s
 from app.estimator.gait import STANCE
 from app.estimator.state import State
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from app.estimator.papers import Reading
 
 
-@kernel
+@part
 def begin_rest(state: State) -> None:
     """Level is unknown from here on; the window is empty."""
     state.levelled = 0.0
@@ -32,7 +32,7 @@ def begin_rest(state: State) -> None:
     state.rest_mx, state.rest_my, state.rest_mz = 0.0, 0.0, 0.0
 
 
-@kernel
+@part
 def rest(state: State, reading: Reading, dt_s: float) -> int:
     """One sample of the search for level: ``RESTING`` goes on, ``LEVEL_FOUND`` ends it.
 
@@ -58,7 +58,7 @@ def rest(state: State, reading: Reading, dt_s: float) -> int:
     return s.RESTING | s.LEVEL_FOUND
 
 
-@kernel
+@part
 def add(state: State, reading: Reading) -> None:
     """One more sample in the window's sums."""
     f, w, m = reading.force_b, reading.rate_b, reading.field_b
@@ -85,7 +85,7 @@ def add(state: State, reading: Reading) -> None:
         )
 
 
-@kernel
+@part
 def find_gravity(state: State) -> None:
     """Gravity is the mean |f| of the window, or what the person set."""
     state.levelled = 1.0
@@ -94,7 +94,7 @@ def find_gravity(state: State) -> None:
         state.gravity = state.rest_norm / state.rest_n
 
 
-@kernel
+@part
 def truly_still(state: State) -> bool:
     """Whether each axis' rate hardly scatters and hardly differs from zero."""
     return (
@@ -104,7 +104,7 @@ def truly_still(state: State) -> bool:
     )
 
 
-@kernel
+@part
 def still_axis(total: float, squares: float, count: float) -> bool:
     """One axis of it, from its sums."""
     mean = total / count

@@ -12,7 +12,7 @@ import numpy as np
 from scipy.ndimage import minimum_filter1d
 
 from app.blocks import BLOCK, Blocks
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.estimator import state as s
 from app.estimator.corrections import EVENT_WIDTH
 from app.estimator.kalman import step
@@ -81,7 +81,7 @@ def forward(
     return count
 
 
-@kernel
+@part
 def write_trace(trace: Floats, now: KalmanState, happened: int) -> None:
     """One row of the trace. Where level or bias was set anew, what comes after says nothing of before."""
     trace[0] = 2.0 if happened & (s.RESTING | s.LEVEL_FOUND) else now.learnt
@@ -127,14 +127,14 @@ def backward(adjoint: Floats, rows: Floats, trace: Floats, covariances: Floats) 
         unpredict(adjoint, trace[i])
 
 
-@kernel
+@part
 def measured(trace: Floats, which: int) -> Floats:
     """The columns of one measurement."""
     at = _MEASURED + which * _EACH
     return trace[at : at + _EACH]
 
 
-@kernel
+@part
 def unmeasure(adjoint: Floats, measured: Floats, part: int, less: int) -> None:
     """λ ← λ − h (Kᵀλ + y/S) for one scalar measurement of one part, or of how two differ."""
     total, left = measured[0], measured[1]
@@ -148,7 +148,7 @@ def unmeasure(adjoint: Floats, measured: Floats, part: int, less: int) -> None:
         adjoint[less] += seen / total
 
 
-@kernel
+@part
 def uncopy(adjoint: Floats, began: float, part: int, into: int) -> None:
     """λ ← Cᵀ λ, where ``into`` became a copy of ``part``, if it did."""
     if began != 0.0:
@@ -156,7 +156,7 @@ def uncopy(adjoint: Floats, began: float, part: int, into: int) -> None:
         adjoint[into] = 0.0
 
 
-@kernel
+@part
 def unpredict(adjoint: Floats, trace: Floats) -> None:
     """λ ← Fᵀ λ, with the F of ``covariance.propagate``."""
     dt = trace[_DT]

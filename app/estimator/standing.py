@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator.detectors import WALKING
 from app.estimator.kalman_state import GYRO_AT, PARTS, KalmanState
 from app.estimator.state import LEVEL_FOUND, RESTING
@@ -29,7 +29,7 @@ MOST_DOUBT_RADPS = 4e-4
 FIFTHS = 5
 
 
-@kernel
+@part
 def begin_window(state: KalmanState) -> None:
     """The window is empty; the next sample is its first."""
     state.window_n, state.window_statistic, state.window_norm = 0.0, 0.0, 0.0
@@ -41,7 +41,7 @@ def begin_window(state: KalmanState) -> None:
         state.fifth_rate2[k], state.fifth_white[k] = 0.0, 0.0
 
 
-@kernel
+@part
 def begin_bias(state: KalmanState) -> None:
     """What is known of the gyro bias before any window: it is about zero, or what was remembered."""
     for k in range(3):
@@ -49,7 +49,7 @@ def begin_bias(state: KalmanState) -> None:
         state.bias_sum[k] = state.known_info[k] * state.known_bias[k]
 
 
-@kernel
+@part
 def add_to_window(state: KalmanState, field_b: Vector) -> float:
     """The newest sample into the window; returns how long it is, s."""
     if state.window_n == 0.0:
@@ -76,7 +76,7 @@ def add_to_window(state: KalmanState, field_b: Vector) -> float:
     return (state.elapsed_ns - state.window_ns) * 1e-9
 
 
-@kernel
+@part
 def end_fifth(state: KalmanState) -> None:
     """One fifth's mean rate is known."""
     for k in range(3):
@@ -90,7 +90,7 @@ def end_fifth(state: KalmanState) -> None:
     state.fifth_ns = state.elapsed_ns
 
 
-@kernel
+@part
 def find_level(state: KalmanState, field_b: Vector) -> int:
     """One sample of the search for level: ``RESTING`` goes on, ``LEVEL_FOUND`` ends it.
 
@@ -107,7 +107,7 @@ def find_level(state: KalmanState, field_b: Vector) -> int:
     return RESTING | LEVEL_FOUND if whole else RESTING
 
 
-@kernel
+@part
 def keep_standing(state: KalmanState, energy: float, field_b: Vector) -> None:
     """Before the first step each further still window sharpens the bias."""
     if energy > WALKING:
@@ -118,7 +118,7 @@ def keep_standing(state: KalmanState, energy: float, field_b: Vector) -> None:
         learn_bias(state)
 
 
-@kernel
+@part
 def learn_bias(state: KalmanState) -> None:
     """A whole still window: its mean rate, with its doubt, beside what was known; then a new window."""
     if state.fifth_n > 0.0 and state.fifths < FIFTHS:
@@ -139,7 +139,7 @@ def learn_bias(state: KalmanState) -> None:
     begin_window(state)
 
 
-@kernel
+@part
 def doubt_bias(state: KalmanState, axis: int, info: float) -> None:
     """The bias' doubt into P, free of what it had to do with other errors."""
     part = GYRO_AT + axis

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.estimator.corrections import Event
 from app.motion.basics import Floats, Vector
 from app.motion.estimate import Stride
@@ -92,7 +92,7 @@ def figures(
     )
 
 
-@kernel
+@part
 def wrapped(angle_rad: float) -> float:
     """The same angle between −π and π."""
     return angle_rad - math.tau * float(np.rint(angle_rad / math.tau))

@@ -2,12 +2,27 @@
 
 from __future__ import annotations
 
-from app.compiled import kernel
-from app.estimator.kalman_state import FLOOR_AT, FORCE_AT, GYRO_AT, NORTH_AT, KalmanState
+from app.compiled import part
+from app.estimator.kalman_state import FLOOR_AT, FORCE_AT, GYRO_AT, MEASURES, NORTH_AT, PARTS, KalmanState
 from app.rotation import exponential, multiply, normalise
 
 
-@kernel
+@part
+def forget_measurements(state: KalmanState) -> None:
+    """A new step: it has measured nothing yet, and begun no floor and no north."""
+    state.floor_began, state.north_began = 0.0, 0.0
+    for k in range(MEASURES):
+        state.totals[k] = 0.0
+
+
+@part
+def begin_shift(state: KalmanState) -> None:
+    """An update begins: nothing is found yet."""
+    for i in range(PARTS):
+        state.shift[i] = 0.0
+
+
+@part
 def take_shift(state: KalmanState) -> None:
     """What an update found goes into the estimate, and into the sums for the rows behind."""
     d = state.shift
