@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import part
 from app.estimator.clipping import axis_in_n
 from app.estimator.covariance import add_variance_along
 from app.estimator.kalman_state import VELOCITY_AT, KalmanState
@@ -29,7 +29,7 @@ LEFT_SHARE = 0.2
 _TOP, _FLAT, _RUN, _LASTED, _SLOPE, _BEGAN = 0, 2, 4, 5, 6, 7
 
 
-@kernel
+@part
 def mind_jolts(state: KalmanState, before: Vector, dt_s: float) -> None:
     """For each accelerometer axis: doubt while it clips, the velocity it missed when it stops."""
     forces, jolts = (state.f0, state.f1, state.f2), state.jolts
@@ -45,7 +45,7 @@ def mind_jolts(state: KalmanState, before: Vector, dt_s: float) -> None:
         jolts[axis, _SLOPE] = slope
 
 
-@kernel
+@part
 def clip(state: KalmanState, axis: int, force: float, dt_s: float) -> None:
     """One sample at the top, or a new one."""
     jolts, side, top = state.jolts, int(force < 0.0), abs(force)
@@ -65,7 +65,7 @@ def clip(state: KalmanState, axis: int, force: float, dt_s: float) -> None:
     jolts[axis, _RUN] += 1.0
 
 
-@kernel
+@part
 def mend(state: KalmanState, axis: int, force: float, slope: float, dt_s: float) -> None:
     """A parabola over the gap would have gained s·D²/6 more; half of the gap ago, on average."""
     lasted_s = state.jolts[axis, _LASTED] + dt_s
@@ -82,7 +82,7 @@ def mend(state: KalmanState, axis: int, force: float, slope: float, dt_s: float)
     state.px, state.py, state.pz = state.px + half_s * x, state.py + half_s * y, state.pz + half_s * z
 
 
-@kernel
+@part
 def note_missed(state: KalmanState, missed_mps: float) -> None:
     """How much was missed in this swing, and when: its moments about the lift."""
     since_s = 1e-9 * (state.elapsed_ns - state.lift_ns)
@@ -91,7 +91,7 @@ def note_missed(state: KalmanState, missed_mps: float) -> None:
     state.missed_at2 += missed_mps * since_s * since_s
 
 
-@kernel
+@part
 def doubt_jolts(state: KalmanState) -> None:
     """At a contact: how far off it may be because the swing was pushed and stopped beyond the range.
 
@@ -102,7 +102,7 @@ def doubt_jolts(state: KalmanState) -> None:
     state.missed_mps, state.missed_at, state.missed_at2 = 0.0, 0.0, 0.0
 
 
-@kernel
+@part
 def forget_jolts(state: KalmanState) -> None:
     """A new segment: no gap goes on into it."""
     state.missed_mps, state.missed_at, state.missed_at2 = 0.0, 0.0, 0.0
