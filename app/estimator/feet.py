@@ -192,9 +192,10 @@ def _shapes(t_s: Floats, knots_s: Floats) -> Floats:
 
 def _weights(foot: Foot, knots_s: Floats, start_rad: float) -> Floats:
     """1/σ of each part."""
-    _, bias = foot.tracker.method.doubts(foot.tracker.state)
-    pieces = 1.0 / (WANDER_RADPS * np.sqrt(np.diff(knots_s)))
-    return np.concatenate([[1.0 / start_rad, 1.0 / bias], pieces])
+    _, known, moved = foot.tracker.method.doubts(foot.tracker.state)
+    lasts_s = np.diff(knots_s)
+    pieces = 1.0 / np.sqrt(WANDER_RADPS**2 * lasts_s + (moved * lasts_s) ** 2)
+    return np.concatenate([[1.0 / start_rad, 1.0 / max(known, moved)], pieces])
 
 
 def _first_turn(left: Floats, right: Floats) -> float:

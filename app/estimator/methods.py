@@ -19,7 +19,7 @@ from app.motion.samples import GyroBias
 from app.rotation import yaw_of
 from app.settings import Settings
 
-#: What a gyro's bias may be, by how sure its filter is, is at least and at most this, rad/s.
+#: What a gyro's bias may be, by how sure its rests are, is at least and at most this, rad/s.
 BIAS_RADPS = (5e-4, 4e-3)
 
 
@@ -36,7 +36,7 @@ class Method(NamedTuple):
     correct: Callable[[Floats, int, Floats, Floats, Record], None]
     moves: Callable[[Record], bool]  # whether rows since the lift may still change
     trust: Callable[[Record, float], Trust | None]  # how sure it is, after so many metres
-    doubts: Callable[[Record], tuple[float, float]]  # as in ``strides.Step``
+    doubts: Callable[[Record], tuple[float, float, float]]  # as in ``strides.Step``
     compass: Callable[[Record], Compass | None] | None  # what the method itself holds of the magnetic field
     events: int  # that a run may report before it pauses for them to be applied
 
@@ -53,14 +53,21 @@ def _papers_moves(record: Record) -> bool:
     return bool(record["phase"][0] == SWING or record["contrary_s"][0] > 0.0)
 
 
-def _papers_doubts(_: Record) -> tuple[float, float]:
-    return 0.0, BIAS_RADPS[1]
+def _papers_doubts(_: Record) -> tuple[float, float, float]:
+    return 0.0, BIAS_RADPS[1], 0.0
 
 
-def _kalman_doubts(record: Record) -> tuple[float, float]:
+def _kalman_doubts(record: Record) -> tuple[float, float, float]:
     state = record[0]
-    known = max(float(np.min(state["bias_info"])), 1e-9)
-    return unknown_m2(record), min(max(known**-0.5, BIAS_RADPS[0]), BIAS_RADPS[1])
+    info = np.maximum(state["bias_info"], 1e-9)
+    known_radps = min(max(float(np.min(info)) ** -0.5, BIAS_RADPS[0]), BIAS_RADPS[1])
+    return unknown_m2(record), known_radps, _moved_radps(state)
+
+
+def _moved_radps(state: np.void) -> float:
+    """How far a gyro's bias has moved since the rests: zero velocities tell two of its axes."""
+    moved = state["gyro_bias"] - state["bias_sum"] / np.maximum(state["bias_info"], 1e-9)
+    return math.sqrt(0.5 * float(moved @ moved))
 
 
 def _kalman_moves(record: Record) -> bool:

@@ -38,10 +38,11 @@ class Step(NamedTuple):
     heading_rad: float  # of the toe there
     gap_s: float  # without samples since the stride before
     doubt_m2: float  # σ² that all swings so far add to the position because they did not fit
-    bias_doubt_radps: float  # how well the gyro's bias is known
+    bias_doubt_radps: float  # how well the gyro's bias is known by its rests
+    bias_moved_radps: float  # … and how far it has moved since, about an axis
 
 
-def step_of(stride: Stride, event: Floats, gap_s: float, doubts: tuple[float, float]) -> Step:
+def step_of(stride: Stride, event: Floats, gap_s: float, doubts: tuple[float, float, float]) -> Step:
     """A stride that ``event`` ended; ``gap_s`` and ``doubts`` as in ``Step``."""
     rows = (int(event[Event.LIFT_ROW]), int(event[Event.CONTACT_ROW]))
     north, east, _ = stride.end_n

@@ -38,6 +38,10 @@ GAP_SPEED, GAP_TURN = 1.0, 0.3
 LOST_S, FOUND_RAD = 1.0, 0.3
 #: σ of both where hindsight has put them together, m and rad.
 AGAIN_M, AGAIN_RAD = 0.2, 0.02
+#: A gyro's bias that has moved moves as far again in so long, s.
+MOVES_S = 100.0
+#: The walk is linked anew when a gyro's doubt (its square) has grown so many times, up to so many strides.
+ANEW_TIMES, MOST_ANEW = 2.0, 2000
 #: Contacts without a pull for so long tell that nothing holds the feet together.
 LEAST_CONTACTS = 6
 #: Parts of the state for each foot: shift north and east, turn, and how fast that grows.
@@ -60,14 +64,16 @@ class Together:
         self._first_rad = 0.0
         self._broken = False  # the bound, in the first contacts
         self._strangers = False
-        self._early: list[tuple[int, Step]] = []
+        self._strides: list[tuple[int, Step]] = []
+        self._bias2 = [0.0, 0.0]  # the largest doubt so far about each gyro's bias, (rad/s)²
+        self._from_start = after is None
         self._begin()
         if after is not None:
             self._contacts = FIRST_CONTACTS
             self._last[:] = after
             self._P = np.diag([AGAIN_M**2, AGAIN_M**2, AGAIN_RAD**2, 0.0] * 2)
             for side, step in enumerate(after):
-                self._P[_EACH * side + _RATE, _EACH * side + _RATE] = step.bias_doubt_radps**2
+                self._doubt_bias(side, step)
 
     def _begin(self) -> None:
         self.turns = (Turns(), Turns())
@@ -77,6 +83,8 @@ class Together:
         self._P = np.zeros((2 * _EACH, 2 * _EACH))
         for side in (0, 1):
             self._doubt(side, START_M**2, START_RAD[side] ** 2)
+            self._P[_EACH * side + _RATE, _EACH * side + _RATE] = self._bias2[side]
+        self._begun2 = list(self._bias2)  # … as it was when the walk was last begun
         self._last: list[Step | None] = [None, None]
         self._since = [1, 1]  # the other's contacts since this foot's
         self._went_m = [0.0, 0.0]  # … and how far it went
@@ -93,18 +101,26 @@ class Together:
         """One contact more, later than all before."""
         early = self._contacts < FIRST_CONTACTS
         broken = self._move(side, step)
-        if not early:
+        if not self._from_start or len(self._strides) >= MOST_ANEW:
             return
-        self._early.append((side, step))
-        self._broken |= broken
-        if self._broken:
+        self._strides.append((side, step))
+        self._broken |= early and broken
+        if early and self._broken:
             self._first_rad = _yaw_between(np.array(self._pairs))
             self._strangers = self._contacts == FIRST_CONTACTS and 2 * self._misfits > FIRST_CONTACTS
             self._first_rad *= not self._strangers
-            self._begin()
-            for before in self._early:
-                self._move(*before)
-            self.anew += 1
+            self._anew()
+        elif 0.0 < self._begun2[side] * ANEW_TIMES < self._bias2[side]:
+            self._anew()
+        else:
+            self._begun2[side] = self._begun2[side] or self._bias2[side]
+
+    def _anew(self) -> None:
+        """All strides so far once more, by what is known now."""
+        self._begin()
+        for before in self._strides:
+            self._move(*before)
+        self.anew += 1
 
     def _move(self, side: int, step: Step) -> bool:
         """The filter over one stride; says whether the bound was broken at its end."""
@@ -167,8 +183,8 @@ class Together:
         F[at, at + _TURN], F[at + 1, at + _TURN] = -turned[1], turned[0]
         F[at : at + 2, at + _RATE] = 0.5 * dt_s * F[at : at + 2, at + _TURN]
         F[at + _TURN, at + _RATE] = dt_s
-        if last is None:
-            self._P[at + _RATE, at + _RATE] = step.bias_doubt_radps**2
+        self._doubt_bias(side, step)
+        self._P[at + _RATE, at + _RATE] += step.bias_moved_radps**2 * dt_s / MOVES_S
         self._P = F @ self._P @ F.T
         far2, turn2 = STRIDE_M**2 + (STRIDE_SHARE * step.length_m) ** 2, WANDER_RADPS**2 * dt_s
         far2 += step.doubt_m2 - (last.doubt_m2 if last else 0.0)
@@ -177,6 +193,12 @@ class Together:
         far2 += (GAP_SPEED * step.gap_s) ** 2
         turn2 += (GAP_TURN * step.gap_s) ** 2
         self._doubt(side, far2, turn2)
+
+    def _doubt_bias(self, side: int, step: Step) -> None:
+        """A gyro's bias that has moved about the axes that zero velocities tell may have about down."""
+        bias2 = max(self._bias2[side], step.bias_doubt_radps**2, step.bias_moved_radps**2)
+        self._P[_EACH * side + _RATE, _EACH * side + _RATE] += bias2 - self._bias2[side]
+        self._bias2[side] = bias2
 
     def _doubt(self, side: int, far2_m2: float, turn2_rad2: float) -> None:
         at = _EACH * side

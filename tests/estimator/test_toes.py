@@ -59,7 +59,7 @@ def steps(ways: list[float], heading_rad: float = 0.0, length_m: float = 1.2, ga
         place = place + length_m * np.array([math.cos(way), math.sin(way)])
         where = (float(place[0]), float(place[1]))
         gap_s = 1.0 if i == gap_at else 0.0
-        made.append(Step(i, i + 1.0, 0.5, length_m, where, i, i, heading_rad, gap_s, 0.0, 1e-3))
+        made.append(Step(i, i + 1.0, 0.5, length_m, where, i, i, heading_rad, gap_s, 0.0, 1e-3, 0.0))
     return made
 
 
