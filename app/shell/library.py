@@ -7,11 +7,14 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from app.formats import mcap
 from app.formats.kept import Kept, kept, lost_seqs
 from app.formats.recover import Recovered
 from app.formats.recover import recover as recovered
 from app.motion.recording import Journal, Recording
+from app.motion.samples import GAP_NS, Samples
 from app.outputs.files import beside, write_new
 from app.sources.files import read_bytes
 from app.sources.opening import open_recording
@@ -46,14 +49,24 @@ def info(spec_text: str) -> dict[str, Any]:
     return told
 
 
-def _sensor(samples: Any) -> dict[str, Any]:
+def _sensor(samples: Samples) -> dict[str, Any]:
     return {
         "role": samples.role.value,
         "samples": len(samples),
         "rate_hz": samples.rate_hz,
         "dropped": dict(samples.dropped),
         "saturated": int((samples.saturation != 0).sum()),
-    }
+    } | _missing(samples)
+
+
+def _missing(samples: Samples) -> dict[str, int | float]:
+    """What the stamps tell that there is not: samples missing between two, and gaps that part segments."""
+    steps_ns = np.diff(samples.matrix[:, 0])
+    usual_ns = float(np.median(steps_ns)) if len(steps_ns) else 0.0
+    gaps = steps_ns > GAP_NS
+    short = steps_ns[~gaps & (steps_ns > 1.5 * usual_ns)]
+    missing = int((np.round(short / usual_ns) - 1.0).sum()) if len(short) else 0
+    return {"missing": missing, "gaps": int(gaps.sum()), "gaps_s": float(steps_ns[gaps].sum()) * 1e-9}
 
 
 def _ours(recording: Recording, found: Kept) -> dict[str, Any]:
@@ -100,11 +113,13 @@ def lines(told: dict[str, Any]) -> list[str]:
     """The same for a person."""
     text = [f"{told['recording']} ({told['format']}): {told['duration_s']:.1f} s"]
     for sensor, figures in told["sensors"].items():
-        lost = told.get("lost", {}).get(sensor, 0)
+        lost = max(told.get("lost", {}).get(sensor, 0), figures["missing"])
+        count = figures["gaps"]
+        gaps = f", {count} gap{'s' * (count > 1)} of {figures['gaps_s']:.1f} s" if count else ""
         dropped = sum(figures["dropped"].values())
         text.append(
             f"  {sensor}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
-            f" {dropped} dropped, {figures['saturated']} saturated{_warmth(told, sensor)}"
+            f" {dropped} dropped, {figures['saturated']} saturated{gaps}{_warmth(told, sensor)}"
         )
     text += [f"  {sentence}" for sentence in told["assumed"]]
     if "began" in told:

@@ -56,3 +56,20 @@ def test_info_tells_of_any_recording(capsys) -> None:
     demo = Path(__file__).parents[2] / "recordings" / "demo.csv"
     assert main(["info", str(demo)]) == 0
     assert "plain CSV" in capsys.readouterr().out
+
+
+def test_info_tells_what_is_missing_between_stamps(tmp_path: Path, capsys) -> None:
+    walk = [s for s in random_samples(200) if s.sensor == "left" and s.seq not in (20, 21, 50) and s.seq < 60]
+    later = [s._replace(device_ns=s.device_ns + 3 * 10**9, seq=s.seq + 60) for s in walk[:10]]
+    renumbered = [s._replace(seq=i) for i, s in enumerate([*walk, *later])]  # as a decoder numbers them
+    path = tmp_path / "walk.mcap"
+    path.write_bytes(write(renumbered))
+    assert main(["info", str(path), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    left = told["sensors"]["left"]
+    assert told["lost"] == {"left": 0}
+    assert (left["missing"], left["gaps"]) == (3, 1)
+    assert left["gaps_s"] == pytest.approx(2.41)
+    assert main(["info", str(path)]) == 0
+    assert "3 lost, 0 dropped" in (text := capsys.readouterr().out)
+    assert "1 gap of 2.4 s" in text
