@@ -7,7 +7,7 @@ import logging
 import socket
 import ssl
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from pathlib import Path
 from typing import Any, NamedTuple, Protocol
@@ -64,6 +64,9 @@ class Sender(Protocol):
     def send(self, sample: Sample) -> None:
         """One sample more."""
 
+    def warm(self, temperatures: Mapping[str, float]) -> None:
+        """What the sensors' thermometers read by now, °C."""
+
     def begin_anew(self, session: int) -> None:
         """The source starts again from its beginning."""
 
@@ -116,6 +119,10 @@ class WsSender:
         """One sample more."""
         self._outbox.add(sample)
         self._news.set()
+
+    def warm(self, temperatures: Mapping[str, float]) -> None:
+        """What the sensors' thermometers read by now, °C."""
+        self._outbox.warm(temperatures)
 
     def begin_anew(self, session: int) -> None:
         """The source starts again from its beginning."""
@@ -238,6 +245,7 @@ class UdpSender:
         self._socket.setblocking(False)
         self._session, self._repeats = session, repeats
         self._before: dict[str, list[Sample]] = {}
+        self._warmth: dict[str, float] = {}
         self._sent = self._failed = 0
 
     def send(self, sample: Sample) -> None:
@@ -248,11 +256,16 @@ class UdpSender:
         samples = samples[-min(self._repeats + 1, fitting(_DATAGRAM_BYTES), MOST_SAMPLES) :]
         self._before[sample.sensor] = samples
         try:
-            self._socket.sendto(encode_binary(self._session, samples), self._place)
+            celsius = self._warmth.pop(sample.sensor, None)
+            self._socket.sendto(encode_binary(self._session, samples, temperature_c=celsius), self._place)
             self._sent += 1
         except OSError as error:
             self._failed += 1
             _log.debug("a datagram was not sent: %s", error)
+
+    def warm(self, temperatures: Mapping[str, float]) -> None:
+        """What the sensors' thermometers read by now, °C."""
+        self._warmth.update(temperatures)
 
     def begin_anew(self, session: int) -> None:
         """The source starts again from its beginning."""

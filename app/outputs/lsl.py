@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import asyncio
 import time
+from collections.abc import Mapping
 from typing import Any
 
 from app.clocks import LiveClock
@@ -41,6 +42,9 @@ class LslSender:
         self._stamps[sample.sensor] = stamp
         outlet.push_sample(row(sample, channels), stamp)
         self._sent += 1
+
+    def warm(self, temperatures: Mapping[str, float]) -> None:
+        """A stream's channels are its samples': there is no place for it."""
 
     def _open(self, sample: Sample) -> tuple[Any, int]:
         channels = _FULL if sample.field_b is not None else _BARE

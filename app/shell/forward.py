@@ -19,7 +19,7 @@ from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.source import Source
 
-#: A source that is faster than the clock (``speed=0``) waits for the network here.
+#: A source that is faster than the clock (``speed=0``) waits for the network here; temperatures are told.
 _BREATH = 200
 #: After Ctrl-C the last samples have so long to arrive.
 _LAST_S = 0.5
@@ -70,6 +70,8 @@ async def _read(source: Source, sender: Sender) -> None:
         if isinstance(item, RestartHere):
             sender.begin_anew(secrets.randbits(64))
         elif isinstance(item, Sample):
+            if taken % _BREATH == 0:
+                sender.warm(source.info.temperatures)
             sender.send(item)
             taken += 1
             if taken % _BREATH == 0:

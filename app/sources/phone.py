@@ -35,6 +35,7 @@ class PhoneSource(Inbox):
             self._told,
             self._lost,
             lambda: {"messages": self._intake.counters},
+            lambda: self._intake.temperatures,
         )
 
     def take(self, data: bytes | str) -> str:

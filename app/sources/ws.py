@@ -55,6 +55,7 @@ class WsSource(Inbox):
             lambda: self._intake.notes,
             self._lost,
             lambda: {"messages": self._intake.counters},
+            lambda: self._intake.temperatures,
         )
         listener = bind(spec, host, port, socket.SOCK_STREAM)
         self.port: int = listener.getsockname()[1]

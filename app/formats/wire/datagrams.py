@@ -70,7 +70,8 @@ class Datagrams:
     def temperatures(self) -> dict[str, float]:
         """Of the sensors that tell it, °C."""
         told = {name: decoder.temperature_c for name, decoder in self._decoders().items()}
-        return {name: celsius for name, celsius in told.items() if celsius is not None}
+        found = {name: celsius for name, celsius in told.items() if celsius is not None}
+        return {**self.intake.temperatures, **found}
 
     def lost(self) -> dict[str, int]:
         """What did not become a sample, by reason in words."""

@@ -8,6 +8,7 @@ the same sensor is then over: what still comes of it is refused.
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 from app.formats.mounting import AS_GIVEN
@@ -55,6 +56,7 @@ class Intake:
     def __init__(self, options: Options | None = None) -> None:
         self.counters = Counters()
         self.notes: list[str] = []
+        self.temperatures: Mapping[str, float] = {}  # °C, of sensors that tell it
         self._options = options or Options()
         self._streams: dict[str, _Stream] = {}
         self._makers: dict[str, Maker] = {}
@@ -83,6 +85,8 @@ class Intake:
         if isinstance(stream, Malformed):
             self.counters.unknown += 1
             return [], stream
+        if message.temperature_c is not None:  # another thread may be reading
+            self.temperatures = {**self.temperatures, name: message.temperature_c}
         taken = self._new(stream, name, message.samples)
         return taken, Ack(message.session, sent_as, stream.next)
 

@@ -12,6 +12,7 @@ import struct
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
+from app.formats.wire.warmth import COLDEST_C, HOTTEST_C, believed
 from app.motion.basics import Quaternion, Vector
 from app.motion.samples import Sample
 
@@ -28,10 +29,11 @@ HEX = re.compile(r"[0-9a-fA-F]{1,16}")
 #: A sensor's name: ``left``, ``right``, ``foot`` or any other.
 NAME = re.compile(r"[A-Za-z0-9_.-]{1,16}")
 
-FIELD, ORIENTATION, SATURATION, DOUBLES = 1, 2, 4, 8  # flags of a binary message
+FIELD, ORIENTATION, SATURATION, DOUBLES, TEMPERATURE = 1, 2, 4, 8, 16  # flags of a binary message
 CHANNELS = 9
 
 _HEAD = struct.Struct("<4sBBHQQ16s")
+_TAIL = struct.Struct("<f")  # the temperature
 _NAN3, _NAN4 = (math.nan,) * 3, (math.nan,) * 4
 
 
@@ -40,6 +42,7 @@ class Message(NamedTuple):
 
     session: int  # 64 bits, chosen at random by the sender when it starts
     samples: list[Sample]
+    temperature_c: float | None = None  # the sensor's, where it tells it
 
 
 class Malformed(NamedTuple):
@@ -76,19 +79,20 @@ def _decode_binary(data: bytes, host_ns: int) -> Message | Malformed:
     _, version, flags, count, session, first, padded = _HEAD.unpack_from(data)
     if version != VERSION:
         return Malformed(f"version {version}, expected {VERSION}")
-    if flags >= len(_ROWS):
-        return Malformed(f"flags {flags}, expected 0 to {len(_ROWS) - 1}")
-    row = _ROWS[flags]
-    if not 1 <= count <= MOST_SAMPLES or len(data) != _HEAD.size + count * row.size:
-        return Malformed(f"{len(data)} bytes for {count} samples, expected {_HEAD.size} + {row.size} each")
+    if flags >= 2 * TEMPERATURE:
+        return Malformed(f"flags {flags}, expected 0 to {2 * TEMPERATURE - 1}")
+    row, told = _ROWS[flags % TEMPERATURE], _TAIL.size * bool(flags & TEMPERATURE)
+    frame = _HEAD.size + told
+    if not 1 <= count <= MOST_SAMPLES or len(data) != frame + count * row.size:
+        return Malformed(f"{len(data)} bytes for {count} samples, expected {frame} + {row.size} each")
     name = padded.rstrip(b"\0").decode("ascii", "replace")
     if NAME.fullmatch(name) is None:
         return Malformed("the sensor's name: expected letters, digits, _ . - and zeros behind them")
     samples = [
         _from_row(name, first + i, host_ns, flags, numbers)
-        for i, numbers in enumerate(row.iter_unpack(data[_HEAD.size :]))
+        for i, numbers in enumerate(row.iter_unpack(data[_HEAD.size : len(data) - told]))
     ]
-    return _checked(session, samples)
+    return _checked(session, samples, _TAIL.unpack_from(data, len(data) - told)[0] if told else None)
 
 
 def _from_row(name: str, seq: int, host_ns: int, flags: int, row: tuple[Any, ...]) -> Sample:
@@ -105,7 +109,9 @@ def _from_row(name: str, seq: int, host_ns: int, flags: int, row: tuple[Any, ...
     return Sample(name, seq, row[0], host_ns, force, rate, field, saturation, q)
 
 
-def encode_binary(session: int, samples: Sequence[Sample], doubles: bool = False) -> bytes:
+def encode_binary(
+    session: int, samples: Sequence[Sample], doubles: bool = False, temperature_c: float | None = None
+) -> bytes:
     """Samples of one sensor with consecutive numbers; ``doubles`` keeps every bit, else float32."""
     flags = (
         FIELD * any(s.field_b is not None for s in samples)
@@ -114,8 +120,11 @@ def encode_binary(session: int, samples: Sequence[Sample], doubles: bool = False
         | DOUBLES * doubles
     )
     row, first = _ROWS[flags], samples[0]
-    head = _HEAD.pack(MAGIC, VERSION, flags, len(samples), session, first.seq, first.sensor.encode("ascii"))
-    return head + b"".join(row.pack(*_to_row(flags, sample)) for sample in samples)
+    told, tail = (0, b"") if temperature_c is None else (TEMPERATURE, _TAIL.pack(temperature_c))
+    head = _HEAD.pack(
+        MAGIC, VERSION, flags | told, len(samples), session, first.seq, first.sensor.encode("ascii")
+    )
+    return head + b"".join(row.pack(*_to_row(flags, sample)) for sample in samples) + tail
 
 
 def _to_row(flags: int, sample: Sample) -> tuple[float, ...]:
@@ -130,7 +139,7 @@ def _to_row(flags: int, sample: Sample) -> tuple[float, ...]:
 def fitting(size: int, doubles: bool = False) -> int:
     """How many samples surely fit into a binary message of ``size`` bytes."""
     widest = _ROWS[FIELD | ORIENTATION | SATURATION | DOUBLES * doubles]
-    return max(min((size - _HEAD.size) // widest.size, MOST_SAMPLES), 1)
+    return max(min((size - _HEAD.size - _TAIL.size) // widest.size, MOST_SAMPLES), 1)
 
 
 # --- JSON -----------------------------------------------------------------------------------------
@@ -166,7 +175,10 @@ def from_object(told: dict[str, Any], host_ns: int) -> Message | Malformed:
         if isinstance(sample, Malformed):
             return Malformed(f"samples[{i}]: {sample.why}")
         samples.append(sample)
-    return _checked(int(session, 16), samples)
+    degrees = told.get("temp_c")
+    if degrees is not None and type(degrees) not in (int, float):
+        return Malformed("temp_c: expected a number, or null")
+    return _checked(int(session, 16), samples, degrees)
 
 
 def _from_cells(name: str, seq: int, host_ns: int, row: object) -> Sample | Malformed:
@@ -207,7 +219,7 @@ def _numbers(told: object, count: int) -> list[float] | None:
         return None
 
 
-def encode_json(session: int, samples: Sequence[Sample]) -> str:
+def encode_json(session: int, samples: Sequence[Sample], temperature_c: float | None = None) -> str:
     """The same message as JSON; it keeps every bit."""
     first = samples[0]
     rows = [_to_cells(sample) for sample in samples]
@@ -217,7 +229,7 @@ def encode_json(session: int, samples: Sequence[Sample]) -> str:
         "sensor": first.sensor,
         "seq": first.seq,
         "samples": rows,
-    }
+    } | ({} if temperature_c is None else {"temp_c": temperature_c})
     return json.dumps(told, separators=(",", ":"))
 
 
@@ -239,7 +251,7 @@ def _to_cells(sample: Sample) -> dict[str, object]:
 # --- both -----------------------------------------------------------------------------------------
 
 
-def _checked(session: int, samples: list[Sample]) -> Message | Malformed:
+def _checked(session: int, samples: list[Sample], told: float | None) -> Message | Malformed:
     if not 0 <= samples[0].seq <= MOST_SEQ - len(samples):
         return Malformed(f"seq {samples[0].seq}: expected 0 to 2^53")
     before = -1
@@ -253,7 +265,10 @@ def _checked(session: int, samples: list[Sample]) -> Message | Malformed:
             return Malformed(f"sample {sample.seq}: the field is not finite")
         if sample.saturation >= 1 << CHANNELS:
             return Malformed(f"sat {sample.saturation}: expected 0 to {(1 << CHANNELS) - 1}")
-    return Message(session, samples)
+    degrees = None if told is None else believed(told)
+    if degrees is None and told is not None:
+        return Malformed(f"temperature: expected {COLDEST_C:g} to {HOTTEST_C:g} °C")
+    return Message(session, samples, None if degrees is None else float(degrees))
 
 
 def _unit(w: float, x: float, y: float, z: float) -> Quaternion | None:

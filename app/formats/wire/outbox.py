@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from app.formats.wire.message import encode_binary
@@ -37,6 +38,7 @@ class Outbox:
         self.delivered = 0
         self._session, self._limit_bytes = session, limit_bytes
         self._open: dict[str, list[Sample]] = {}
+        self._warmth: dict[str, float] = {}  # to go with the next message
         self._kept: deque[Parcel] = deque()
         self._unsent: deque[Parcel] = deque()
         self._bytes = self._count = 0
@@ -66,6 +68,10 @@ class Outbox:
         self._count += 1
         if len(samples) >= MOST_IN_ONE:
             self._close_all()
+
+    def warm(self, temperatures: Mapping[str, float]) -> None:
+        """What the sensors' thermometers read, °C: goes with each one's next message."""
+        self._warmth.update(temperatures)
 
     def next(self) -> Parcel | None:
         """The next message to send, if there is one."""
@@ -99,7 +105,8 @@ class Outbox:
         """All open samples into messages: of every sensor, so that the order among them is kept nearly."""
         for samples in self._open.values():
             first, last = samples[0], samples[-1]
-            data = encode_binary(self._session, samples, doubles=True)
+            celsius = self._warmth.pop(first.sensor, None)
+            data = encode_binary(self._session, samples, doubles=True, temperature_c=celsius)
             parcel = Parcel(self._session, first.sensor, first.seq, last.seq + 1, data)
             self._kept.append(parcel)
             self._unsent.append(parcel)

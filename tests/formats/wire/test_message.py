@@ -63,12 +63,30 @@ def test_doubles_and_json_keep_every_bit_of_a_reading(session: int, sent: list[S
     for data in (encode_binary(session, sent, doubles=True), encode_json(session, sent)):
         got = decode(data, 77)
         assert isinstance(got, Message)
-        assert got.session == session
+        assert (got.session, got.temperature_c) == (session, None)
         assert [s._replace(device_q_nb=None) for s in got.samples] == [
             s._replace(device_q_nb=None) for s in sent
         ]
         for a, b in zip(got.samples, sent, strict=True):
             nearly(a, b, 1e-9)
+
+
+@given(sessions, batches(), st.floats(-50, 125, width=32))
+def test_a_temperature_goes_with_its_samples(session: int, sent: list[Sample], celsius: float) -> None:
+    for doubles in (False, True):
+        data = encode_binary(session, sent, doubles, celsius)
+        assert len(data) == len(encode_binary(session, sent, doubles)) + 4
+        got, without = decode(data, 77), decode(encode_binary(session, sent, doubles), 77)
+        assert got == without._replace(temperature_c=celsius)  # type: ignore[call-arg]
+    assert decode(encode_json(session, sent, celsius), 7).temperature_c == celsius  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize("celsius", [math.nan, math.inf, -60.0, 300.0])
+def test_a_message_with_an_impossible_temperature_is_damaged(celsius: float) -> None:
+    for data in (encode_binary(1, [SAMPLE], False, celsius), encode_json(1, [SAMPLE], celsius)):
+        got = decode(data, 0)
+        assert isinstance(got, Malformed)
+        assert "temperature" in got.why
 
 
 @given(sessions, batches())
@@ -97,7 +115,7 @@ json_values = st.recursive(
 
 @given(batches(), st.lists(st.tuples(st.integers(0, 100), st.text(max_size=5), json_values), max_size=3))
 def test_any_edit_of_an_object_is_a_message_or_a_reason(sent: list[Sample], edits: Any) -> None:
-    told = json.loads(encode_json(5, sent))
+    told = json.loads(encode_json(5, sent, 21.5))
     for place, key, value in edits:
         targets = [told, *told["samples"]] if isinstance(told["samples"], list) else [told]
         target = targets[place % len(targets)]
@@ -109,10 +127,15 @@ def test_any_edit_of_an_object_is_a_message_or_a_reason(sent: list[Sample], edit
 
 
 @given(
-    batches(), st.lists(st.tuples(st.integers(0, 9999), st.integers(0, 255)), max_size=8), st.integers(0, 9)
+    batches(),
+    st.lists(st.tuples(st.integers(0, 9999), st.integers(0, 255)), max_size=8),
+    st.integers(0, 9),
+    st.none() | st.floats(-50, 125),
 )
-def test_any_edit_of_bytes_is_a_message_or_a_reason(sent: list[Sample], edits: Any, cut: int) -> None:
-    data = bytearray(encode_binary(5, sent))
+def test_any_edit_of_bytes_is_a_message_or_a_reason(
+    sent: list[Sample], edits: Any, cut: int, celsius: float | None
+) -> None:
+    data = bytearray(encode_binary(5, sent, temperature_c=celsius))
     for place, byte in edits:
         data[place % len(data)] = byte
     check(decode(bytes(data[: len(data) - cut]), 3))
@@ -123,6 +146,7 @@ def check(got: Message | Malformed) -> None:
     if isinstance(got, Malformed):
         assert got.why
         return
+    assert got.temperature_c is None or -50.0 <= got.temperature_c <= 125.0
     assert [s.seq for s in got.samples] == list(range(got.samples[0].seq, got.samples[-1].seq + 1))
     assert all(a.device_ns < b.device_ns for a, b in zip(got.samples, got.samples[1:], strict=False))
     for sample in got.samples:
@@ -163,6 +187,9 @@ def test_the_bytes_are_those_of_the_document() -> None:
         ({"samples": [{"t_ns": 1, "f": [1, 2, 3], "w": [1, 2, 3], "m": 5}]}, "m, q"),
         ({"samples": [{"t_ns": 1, "f": [1, 2, 3], "w": [1, 2, 3], "sat": 512}]}, "sat"),
         ({"samples": [{"t_ns": 1, "f": [1, 2, 10**400], "w": [1, 2, 3]}]}, "f: expected three"),
+        ({"temp_c": "warm"}, "temp_c"),
+        ({"temp_c": True}, "temp_c"),
+        ({"temp_c": 10**400}, "temperature"),
         ({"samples": [{"t_ns": -1, "f": [1, 2, 3], "w": [1, 2, 3]}]}, "t_ns"),
         ({"samples": 2 * [{"t_ns": 1, "f": [1, 2, 3], "w": [1, 2, 3]}]}, "increase"),
     ],
@@ -189,4 +216,4 @@ def test_what_is_said_to_fit_fits(doubles: bool) -> None:
     full = SAMPLE._replace(field_b=(1.0, 2.0, 3.0), device_q_nb=(1.0, 0.0, 0.0, 0.0), saturation=1)
     count = msg.fitting(1400, doubles)
     sent = [full._replace(seq=i, device_ns=i) for i in range(count + 1)]
-    assert len(encode_binary(1, sent[:-1], doubles)) <= 1400 < len(encode_binary(1, sent, doubles))
+    assert len(encode_binary(1, sent[:-1], doubles, 20.0)) <= 1400 < len(encode_binary(1, sent, doubles))

@@ -83,3 +83,22 @@ def test_a_refused_message_is_not_sent_again() -> None:
     box.rewind()
     assert box.next() is None
     assert (box.given_up, box.waiting, box.delivered) == (1, 0, 0)
+
+
+def test_a_temperature_goes_once_with_its_sensors_next_message() -> None:
+    box, receiver = Outbox(1, 10**9), Intake()
+    box.add(sample(0, "left"))
+    box.warm({"left": 24.5, "right": 25.5})
+    told = []
+    for i in range(1, 4):
+        while (parcel := box.next()) is not None:
+            receiver.take(parcel.data, 0)
+            told.append((parcel.sensor, len(parcel.data), dict(receiver.temperatures)))
+        box.add(sample(i, "left" if i == 1 else "right"))
+    small, large = min(size for _, size, _ in told), max(size for _, size, _ in told)
+    assert large == small + 4
+    assert told == [
+        ("left", large, {"left": 24.5}),
+        ("left", small, {"left": 24.5}),
+        ("right", large, {"left": 24.5, "right": 25.5}),
+    ]
