@@ -6,7 +6,6 @@ Plain colours, no light: viser's lit mesh costs much more to draw without a grap
 from __future__ import annotations
 
 import math
-import time
 
 import numpy as np
 import viser
@@ -18,12 +17,11 @@ from app.scene.baked import linear
 from app.scene.colours import FOOT, Rgb, blend, shade
 from app.scene.glb import Part, glb
 from app.scene.guard import FAR_M
+from app.scene.meshes import Meshes
 from app.scene.shoe import SENSOR_HEIGHT_M, sole
 
 PRINTS = 40  # drawn at most
 GROUP = 8  # in a mesh: a stride sends no more than these again
-#: What a mesh is replaced by takes a moment to appear; so long both are there.
-BOTH_S = 0.3
 NUMBERED = 8
 PALE: Rgb = (120, 130, 142)
 PRINT_SHADE = 0.8
@@ -68,17 +66,16 @@ class Footprints:
     """The prints of one foot, in a frame moved aside by ``offset``."""
 
     def __init__(self, scene: viser.SceneApi, name: str, role: Role, offset: Vector) -> None:
-        self._scene, self._name, self._role = scene, f"/ned/prints/{name}", role
+        self._name, self._role = f"/ned/prints/{name}", role
         self._root = scene.add_frame(self._name, show_axes=False, position=offset)
-        self._groups: dict[int, tuple[tuple[Footprint, ...], viser.GlbHandle]] = {}
-        self._leaving: list[tuple[float, viser.GlbHandle]] = []
-        self._names = [f"{self._name}/soles_{i}" for i in range(4 * (PRINTS // GROUP + 1))]  # not in use
+        self._groups: dict[int, tuple[Footprint, ...]] = {}
+        self._meshes = Meshes(scene, f"{self._name}/soles")
         self._labels = [self._label(scene, f"{self._name}/number_{i}") for i in range(NUMBERED)]
         self._drawn: tuple[Footprint, ...] = ()
 
     def draw(self, footprints: tuple[Footprint, ...]) -> None:
         """Make the page show the newest of these."""
-        self._let_go()
+        self._meshes.tidy()
         if footprints is self._drawn or footprints == self._drawn:
             return
         self._drawn = footprints
@@ -90,25 +87,13 @@ class Footprints:
     def _draw_groups(self, prints: list[Footprint]) -> None:
         """Send again only the groups in which something is new."""
         wanted = grouped(prints)
-        gone = [key for key, (shown, _) in self._groups.items() if not same(shown, wanted.get(key, ()))]
-        until_s = time.monotonic() + BOTH_S
-        self._leaving += [(until_s, self._groups.pop(key)[1]) for key in gone]
+        gone = [key for key, shown in self._groups.items() if not same(shown, wanted.get(key, ()))]
+        for key in gone:
+            del self._groups[key]
+            self._meshes.drop(key)
         for key in wanted.keys() - self._groups.keys():
-            while not self._names:  # many corrections at once
-                self._free()
-            file, name = printed(wanted[key], self._role), self._names.pop(0)
-            node = self._scene.add_glb(name, file, cast_shadow=False, receive_shadow=False)
-            self._groups[key] = (wanted[key], node)
-
-    def _let_go(self) -> None:
-        while self._leaving and self._leaving[0][0] < time.monotonic():
-            self._free()
-
-    def _free(self) -> None:
-        """Take the mesh away that was replaced first; its name is used again, so that viser keeps no more."""
-        node = self._leaving.pop(0)[1]
-        self._names.append(node.name)
-        node.remove()
+            self._meshes.put(key, printed(wanted[key], self._role))
+            self._groups[key] = wanted[key]
 
     def _label(self, scene: viser.SceneApi, name: str) -> viser.LabelHandle:
         return scene.add_label(

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-from app.scene import private
+from app.scene import private, ribbon
 from app.scene.colours import css, theme
 
 HERE = Path(__file__).parent
@@ -17,7 +17,7 @@ def head(keys: dict[str, tuple[str, str]], resets: list[str]) -> str:
     script = (HERE / "page.js").read_text(encoding="utf-8").replace("KEY_PRESSES", json.dumps(presses))
     for name in ("present.js", "watching.js", "library.js"):
         script += (HERE / name).read_text(encoding="utf-8")
-    script += marks(resets)
+    script += marks(resets) + ribbon.script()
     return f"<title>Stridescope</title><style>{style()}</style><script>{script}</script>"
 
 

@@ -13,7 +13,7 @@ from html import escape
 import viser
 
 from app.motion.snapshot import FootView, Snapshot
-from app.scene import figures, private, swinging, words
+from app.scene import figures, private, ribbon, swinging, words
 from app.scene.follow import Glide, middle
 from app.scene.ground import Ground
 from app.scene.page import NED_WXYZ, in_view, place_camera
@@ -89,7 +89,7 @@ class Film:
         """The whole file; ``beside`` is markup of ours that stands beside the scene."""
         head = (
             f'<meta http-equiv="Content-Security-Policy" content="{POLICY}">'
-            f"<title>{escape(self._name)} – Stridescope</title>"
+            f"<title>{escape(self._name)} – Stridescope</title><script>{ribbon.script()}</script>"
         )
         before, end, after = self._tape.as_html(dark_mode=self._dark).rpartition("</body>")
         return before.replace("<head>", f"<head>{head}", 1) + beside + end + after

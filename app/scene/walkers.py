@@ -22,9 +22,9 @@ APART_M = 0.2  # between the origins of two feet that nothing links
 GREY: Rgb = (150, 156, 166)
 EMPTY = Trail((), NOTHING[:0], NOTHING[:0])
 
-TRUTH_LOOK = Look(TRUTH, blend(TRUTH, GREY, 0.3), 1.5)
-OWN_LOOK = Look(OWN, blend(OWN, GREY, 0.3), 1.5)
-GHOST_LOOK = Look(CANDIDATE, blend(CANDIDATE, GREY, 0.35), 2.0)
+TRUTH_LOOK = Look(TRUTH, blend(TRUTH, GREY, 0.3), 1.5, above_m=0.004)
+OWN_LOOK = Look(OWN, blend(OWN, GREY, 0.3), 1.5, above_m=0.006)
+GHOST_LOOK = Look(CANDIDATE, blend(CANDIDATE, GREY, 0.35), 2.0, above_m=0.002)
 
 
 def node_name(role: Role, sensor: str, roles: Iterable[Role]) -> str:

@@ -7,7 +7,7 @@ import pytest
 
 from app.motion.basics import Role
 from app.motion.snapshot import Footprint
-from app.scene import footprints, private
+from app.scene import footprints, meshes, private
 from app.scene.footprints import GROUP, PRINTS, Footprints, finite, grouped, placed, same
 from app.scene.page import Scene
 from app.scene.shoe import sole
@@ -46,19 +46,19 @@ def test_a_stride_sends_only_its_own_group(scene: Scene, monkeypatch: pytest.Mon
 def test_what_was_corrected_is_drawn_anew_and_the_old_goes(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(footprints, "BOTH_S", 0.0)
+    monkeypatch.setattr(meshes, "BOTH_S", 0.0)
     drawn = Footprints(scene._server.scene, "foot", Role.FOOT, (0.0, 0.0, 0.0))
     drawn.draw(steps(12))
     moved = tuple(foot._replace(heading_rad=1.0) for foot in steps(12))
     drawn.draw(moved)
     drawn.draw(moved)
-    assert len(meshes(scene)) == len(grouped(list(moved))) == 2
+    assert len(sent_now(scene)) == len(grouped(list(moved))) == 2
     for k in range(60):  # however often, viser keeps no more of it
         drawn.draw(tuple(foot._replace(heading_rad=0.01 * k) for foot in steps(12)))
-    assert len(meshes(scene)) <= 4 * (PRINTS // GROUP + 1)
+    assert len(sent_now(scene)) <= 2 + meshes.LEAVING
 
 
-def meshes(scene: Scene) -> list[str]:
+def sent_now(scene: Scene) -> list[str]:
     """Those that a browser that joins now would be sent."""
     sent = private.broadcast_messages(scene._server)
     return [m.name for m in sent if type(m).__name__ == "GlbMessage" and "/soles_" in m.name]

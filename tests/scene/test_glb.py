@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 import struct
+from dataclasses import replace
 
 import numpy as np
 import trimesh
@@ -65,6 +66,17 @@ def test_colours_are_kept_as_linear_light() -> None:
     paint = np.frombuffer(told, np.uint16, 16, start).reshape(4, 4) / 65535.0
     np.testing.assert_allclose(paint[:, :3], part("one").colours, atol=1e-4)
     np.testing.assert_allclose(paint[:, 3], 1.0)
+
+
+def test_one_colour_and_lines_cost_no_colour_for_each_vertex() -> None:
+    plain = part("one")
+    edges = np.array([[0, 1], [1, 3]], np.uint32)
+    told = document(glb([replace(plain, colours=plain.colours[:1], lines=edges)]))
+    faces, lines = told["meshes"][0]["primitives"]
+    assert faces["attributes"] == lines["attributes"] == {"POSITION": 0}
+    assert lines["mode"] == 1
+    assert told["accessors"][lines["indices"]]["count"] == edges.size
+    assert told["materials"][0]["pbrMetallicRoughness"]["baseColorFactor"] == [0.0, 0.5, 1.0, 1.0]
 
 
 def test_joined_parts_are_the_same_triangles_in_the_same_colours() -> None:

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from app.motion.snapshot import Trail, TrailPiece
-from app.scene import private, trails
+from app.scene import meshes, private, trails
+from app.scene.meshes import BOTH_S
 from app.scene.page import Scene
 from tests.scene import fakes
 
@@ -34,23 +35,86 @@ def test_dashes_of_nothing() -> None:
     assert len(trails.dashes(EMPTY)) == 0
 
 
-def piece_names(scene: Scene) -> set[str]:
-    names = {getattr(m, "name", "") for m in private.broadcast_messages(scene._server)}
-    return {n for n in names if "/piece_" in n}
+class Clock:
+    """The scene's clock, put on by hand."""
+
+    def __init__(self) -> None:
+        self.now_s = 1000.0
+
+    def tick(self, seconds: float) -> None:
+        self.now_s += seconds
+
+    def monotonic(self) -> float:
+        return self.now_s
 
 
-def test_a_piece_is_sent_once_and_goes_with_its_key(scene: Scene) -> None:
+@pytest.fixture
+def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
+    made = Clock()
+    for module in (trails, meshes):
+        monkeypatch.setattr(module, "time", made)
+    return made
+
+
+def pieces_sent(scene: Scene) -> set[bytes]:
+    """The ribbons that a browser which joins now would be sent."""
+    sent = private.broadcast_messages(scene._server)
+    return {m.props.glb_data for m in sent if "/piece_" in getattr(m, "name", "") and hasattr(m, "props")}
+
+
+def test_a_piece_is_sent_once_and_goes_with_its_key(scene: Scene, clock: Clock) -> None:
     nodes = trails.TrailNodes(
         scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
     )
     one, two = TrailPiece("one", straight(1.0)), TrailPiece("two", straight(2.0))
     nodes.draw(Trail((one,), EMPTY, EMPTY))
-    first = dict(nodes._pieces)
+    (first,) = pieces_sent(scene)
     nodes.draw(Trail((one, two), EMPTY, EMPTY))
-    assert nodes._pieces["one"] is first["one"]
-    assert len(piece_names(scene)) == 2
+    assert first in pieces_sent(scene)
+    assert len(pieces_sent(scene)) == 2
     nodes.draw(Trail((two,), EMPTY, EMPTY))
-    assert set(nodes._pieces) == {"two"}
+    clock.tick(BOTH_S + 0.01)
+    nodes.draw(Trail((two,), EMPTY, EMPTY))
+    assert len(pieces_sent(scene)) == 1
+    assert first not in pieces_sent(scene)
+
+
+def test_all_that_is_settled_is_drawn_at_any_time_and_its_end_alone_is_a_line(
+    scene: Scene, clock: Clock
+) -> None:
+    way = straight(30.0, 200)
+    nodes = trails.TrailNodes(
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+    )
+    for settled in range(1, 200):
+        done = settled // 64 * 64
+        pieces = tuple(TrailPiece(f"{i}", way[i : i + 64]) for i in range(0, done, 64))
+        growing = way[done:settled]
+        nodes.draw(Trail(pieces, growing, EMPTY))
+        line = nodes._line._node.points  # what has been a ribbon for a moment is no line any more
+        assert len(line) <= 2 * trails.PART + 2
+        shown = [*line, *(segment for part, _ in nodes._parts for segment in part)]
+        assert {float(s[0, 0]) for s in growing} <= {float(s[0, 0]) for s in shown}
+        clock.tick(0.1)
+    for _ in range(3):
+        clock.tick(BOTH_S)
+        nodes.draw(Trail(pieces, growing, EMPTY))
+    np.testing.assert_array_equal(nodes._line._node.points, growing[-(len(growing) % trails.PART) :])
+    assert len(pieces_sent(scene)) == len(pieces) + len(growing) // trails.PART
+
+
+def test_a_growing_piece_that_was_turned_is_drawn_anew(scene: Scene, clock: Clock) -> None:
+    nodes = trails.TrailNodes(
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+    )
+    nodes.draw(Trail((), straight(5.0), EMPTY))
+    before = pieces_sent(scene)
+    turned = np.ascontiguousarray(straight(5.0)[..., [1, 0, 2]])
+    nodes.draw(Trail((), turned, EMPTY))
+    clock.tick(2 * BOTH_S)
+    nodes.draw(Trail((), turned, EMPTY))
+    assert len(pieces_sent(scene)) == len(before) == 50 // trails.PART
+    assert not before & pieces_sent(scene)
 
 
 def test_what_did_not_change_is_not_sent(scene: Scene) -> None:
