@@ -190,6 +190,8 @@ class KalmanState(Parameters, Window):
     north_known: float  # 1: north was taken, where the field was steady: …
     north_began: float  # … (1: in the last step)
     north_at_rad: float  # its direction in n, its strength and dip
+    contrary_n: float  # steady footprints in a row whose direction was not believed …
+    agreed_ns: float  # … and when one last was
     north_strength: float
     north_dip: float
     P: Floats  # [17, 17]

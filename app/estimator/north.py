@@ -23,18 +23,20 @@ from app.estimator.compass import (
     middle_of,
     told,
 )
-from app.estimator.covariance import copy_part, measure
-from app.estimator.kalman_state import NORTH_AT, NORTH_MEASURE, YAW_AT, KalmanState
+from app.estimator.covariance import add_variance_along, copy_part, measure
+from app.estimator.kalman_state import GYRO_AT, NORTH_AT, NORTH_MEASURE, YAW_AT, KalmanState
 from app.estimator.state import Record
 from app.estimator.taking import begin_shift, take_shift
 from app.motion.basics import Vector
 from app.motion.estimate import Compass
-from app.rotation import rotate
+from app.rotation import conjugate, rotate
 
 #: σ of one footprint's look at north, rad: 4° that eight of them have in common.
 LOOK_NOISE = 0.2
-#: A look so many σ away is not believed.
+#: A look so many σ away is not believed …
 MOST_SIGMAS = 2.0
+#: … until so many in a row were: no iron bends a field alike for so long and leaves its strength and dip.
+CONTRARY = 100
 
 
 @part
@@ -74,6 +76,7 @@ def hold_heading(state: KalmanState) -> None:
         return
     state.verdict, state.strays = judge(state.looks)
     if state.verdict != STEADY or state.steady_north == 0.0:
+        state.contrary_n = 0.0
         return
     if state.north_known == 0.0:
         begin_north(state)
@@ -86,6 +89,7 @@ def begin_north(state: KalmanState) -> None:
     """North is where the steady field of the last footprints points."""
     state.north_strength, state.north_dip, state.north_at_rad = middle_of(state.looks)
     state.north_known = 1.0
+    state.contrary_n, state.agreed_ns = 0.0, state.elapsed_ns
     state.north_began = 1.0
     copy_part(state.P, YAW_AT, NORTH_AT)
     state.P[NORTH_AT, NORTH_AT] += LOOK_NOISE * LOOK_NOISE / FOOTPRINTS
@@ -102,13 +106,26 @@ def keep_north(state: KalmanState, field: Vector) -> None:
     P, variance = state.P, LOOK_NOISE * LOOK_NOISE
     total = P[YAW_AT, YAW_AT] - 2.0 * P[YAW_AT, NORTH_AT] + P[NORTH_AT, NORTH_AT] + variance / FOOTPRINTS
     if away * away > MOST_SIGMAS * MOST_SIGMAS * total:
-        state.verdict, state.strays = DIRECTION_STRAYS, abs(away)
-        return
+        state.contrary_n += 1.0
+        if state.contrary_n < CONTRARY:
+            state.verdict, state.strays = DIRECTION_STRAYS, abs(away)
+            return
+        doubt_heading(state, away)
+    state.contrary_n, state.agreed_ns = 0.0, state.elapsed_ns
     begin_shift(state)
     state.totals[NORTH_MEASURE], state.lefts[NORTH_MEASURE] = measure(
         P, state.shift, state.gains[NORTH_MEASURE], YAW_AT, NORTH_AT, away, variance
     )
     take_shift(state)
+
+
+@part
+def doubt_heading(state: KalmanState, away: float) -> None:
+    """The gyro has drifted beyond its account: so far, and as fast, since the field last agreed."""
+    state.P[YAW_AT, YAW_AT] += away * away
+    fast = away / max(1e-9 * (state.elapsed_ns - state.agreed_ns), 1.0)
+    down_b = rotate(conjugate((state.q0, state.q1, state.q2, state.q3)), (0.0, 0.0, 1.0))
+    add_variance_along(state.P, GYRO_AT, down_b, fast * fast)
 
 
 def compass_of(record: Record) -> Compass | None:

@@ -10,6 +10,7 @@ from app.estimator.smoother import smooth
 from app.estimator.tracker import Tracker
 from app.motion.basics import Floats
 from app.motion.samples import Column, Samples
+from app.rotation import yaw_of
 from app.settings import BUILT_IN
 from tests.estimator.scoring import rmse
 from tests.estimator.test_floor import rotated
@@ -72,6 +73,22 @@ def test_another_place_whose_field_is_steady_but_turned_does_little() -> None:
     samples, _ = drifting(bent)
     held, blind = errors_m(samples, truth)
     assert held < 1.1 * blind
+
+
+def test_a_heading_that_was_knocked_beyond_its_account_is_caught_again() -> None:
+    """A turn that the gyro felt and the foot never made: a hundred steady footprints in a row say so."""
+    samples, _ = drifting()
+    t_s = samples.matrix[:, 0] * 1e-9
+    samples.matrix[:, Column.WX + 2] += 0.5 * ((t_s > 60.0) & (t_s < 61.0))
+    true = yaw_of(tuple(walk(QUERY).truth("foot", t_s[-1:])[1][0].tolist()))
+    off = []
+    for settings in (DEFAULT, BLIND):
+        tracker = Tracker(settings)
+        tracker.advance(table_of(samples.matrix))
+        turn = yaw_of(tuple(rows_of(tracker)[-1, 6:10].tolist())) - true
+        off.append(abs(math.remainder(turn, math.tau)))
+    assert off[0] < 0.1
+    assert off[1] > 0.4
 
 
 def test_the_card_says_what_the_field_does() -> None:
