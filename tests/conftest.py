@@ -30,6 +30,8 @@ CHROMIUM_ARGUMENTS = [
 
 #: A test machine draws in software, perhaps beside other work: a hang is what takes longer than this.
 BROWSER_TIMEOUT_S = 400
+#: And a page may need so long for one thing.
+PATIENCE_MS = 120_000
 
 # The same examples on every run, so that a red test is a change's fault and not luck's;
 # HYPOTHESIS_PROFILE=search looks for new ones.

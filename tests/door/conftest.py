@@ -54,7 +54,7 @@ class House:
         self, path: str = "/", method: str = "GET", host: str | None = None, **headers: str
     ) -> tuple[int, dict[str, str], str]:
         """Status, headers (names in lower case) and body of one plain request."""
-        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=10)
+        connection = http.client.HTTPConnection("127.0.0.1", self.port, timeout=60)
         connection.putrequest(method, path, skip_host=True, skip_accept_encoding=True)
         connection.putheader("Host", host if host is not None else f"127.0.0.1:{self.port}")
         for name, value in headers.items():
@@ -84,14 +84,14 @@ class House:
         """A bare socket that has sent ``data``."""
         connection = socket.socket()
         connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 64 * 1024)
-        connection.settimeout(10)
+        connection.settimeout(60)
         connection.connect(("127.0.0.1", self.port))
         connection.sendall(data)
         self.sockets.append(connection)
         return connection
 
 
-def eventually(condition: Callable[[], bool], seconds: float = 20.0) -> None:
+def eventually(condition: Callable[[], bool], seconds: float = 90.0) -> None:
     """Wait until a condition holds; fail if it never does."""
     end = time.monotonic() + seconds
     while not condition():

@@ -44,7 +44,7 @@ def test_a_value_arrives_in_the_other_browser_too(house: Any, set_value: Frame, 
         send_then_mark(house, set_value, wait, set_value(house.slider, 1.25))
         seen = b""
         while house.slider._impl.uuid.encode() not in seen.split(b"mark")[0] or b"mark" not in seen:
-            seen = _messages(other.recv(timeout=10))
+            seen = _messages(other.recv(timeout=60))
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf, 2.5, -1, "1.5", None, [1.0], True, {}])
@@ -208,7 +208,7 @@ def test_a_browser_that_leaves_is_forgotten(house: Any, wait: Wait) -> None:
 
 def test_when_viser_ends_the_browser_is_told(house: Any) -> None:
     with house.connect() as websocket:
-        websocket.recv(timeout=10)
+        websocket.recv(timeout=60)
         house.viser.stop()
         read_to_the_end(websocket)
 
@@ -217,7 +217,7 @@ def read_to_the_end(websocket: Any) -> None:
     """Read until the other side has ended the connection."""
     with contextlib.suppress(websockets.exceptions.ConnectionClosed):
         while True:
-            websocket.recv(timeout=10)
+            websocket.recv(timeout=60)
 
 
 def _messages(frame: bytes) -> bytes:

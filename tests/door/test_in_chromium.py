@@ -14,6 +14,7 @@ from playwright.sync_api import Browser, BrowserContext, Page
 from viser import uplot
 
 from app.motion.door import GuiRule
+from tests.conftest import PATIENCE_MS
 
 DRAWN = """() => {
     const points = window.__viserTestpoints, tree = window.__viserSceneTree;
@@ -44,6 +45,7 @@ HOSTILE = (
 @pytest.fixture
 def context(browser: Browser) -> Iterator[BrowserContext]:
     made = browser.new_context(viewport={"width": 640, "height": 360})
+    made.set_default_timeout(PATIENCE_MS)
     yield made
     made.close()
 
@@ -70,7 +72,7 @@ def visit(context: BrowserContext, house: Any) -> tuple[Page, list[str]]:
     page.on("pageerror", lambda error: complaints.append(error.message))
     page.on("requestfailed", lambda request: complaints.append(request.url[:100]))
     page.goto(house.door.address + ("&" if "?" in house.door.address else "/?") + "fixedDpr=1")
-    page.wait_for_function(DRAWN, timeout=60_000)
+    page.wait_for_function(DRAWN)
     return page, complaints
 
 

@@ -44,7 +44,7 @@ def feed(house: Any, query: str = "", **more: Any) -> ws.ClientConnection:
 
 
 def post(house: Any, body: bytes, path: str = "/push", **headers: str) -> tuple[int, str]:
-    connection = http.client.HTTPConnection("127.0.0.1", house.port, timeout=10)
+    connection = http.client.HTTPConnection("127.0.0.1", house.port, timeout=60)
     connection.request("POST", path, body, {name.replace("_", "-"): value for name, value in headers.items()})
     answer = connection.getresponse()
     text = answer.read().decode().strip()
@@ -68,7 +68,7 @@ def test_a_message_that_is_too_long_ends_the_connection(open_house: Callable[...
     with feed(house) as sender:
         sender.send(b"x" * (MOST_MESSAGE_BYTES + 1))
         with pytest.raises(ConnectionClosed):
-            sender.recv(timeout=10)
+            sender.recv(timeout=60)
     assert taken.messages == []
 
 

@@ -24,6 +24,7 @@ from app.session import Session
 from app.settings import Settings
 from app.sources.phone import PhoneSource
 from app.sources.spec import parse_spec
+from tests.conftest import PATIENCE_MS
 
 #: A phone that lies still with its screen up, then swings about its x axis: events as a browser gives them.
 SENSOR = """([sign, axis]) => {
@@ -49,6 +50,7 @@ IPHONE = """answer => {
 @pytest.fixture
 def phone(browser: Browser) -> Iterator[BrowserContext]:
     made = browser.new_context(viewport={"width": 390, "height": 844}, has_touch=True, is_mobile=True)
+    made.set_default_timeout(PATIENCE_MS)
     yield made
     made.close()
 
@@ -118,7 +120,7 @@ def test_a_phone_on_the_left_shoe_walks(
         np.testing.assert_allclose(sample.specific_force_b, (0, 0, -G_MPS2), atol=1e-9)
     # screen up, top edge to the toe: the phone's y is the toe, its x the right side, its z up
     np.testing.assert_allclose(got[-1].angular_rate_b, np.radians([45, 90, -9]), atol=1e-9)
-    page.get_by_text("Sending as the left foot").wait_for(timeout=30_000)
+    page.get_by_text("Sending as the left foot").wait_for()
     page.get_by_role("button", name="Stop").click()
     page.get_by_text("Stopped").wait_for()
     assert complaints == []
@@ -145,7 +147,7 @@ def test_a_phone_that_sits_otherwise_is_told_and_sends_nothing(
     page, _ = visit(phone, open_house(taker=source))
     page.get_by_role("button").click()
     page.evaluate(SENSOR, [1, "y"])
-    page.get_by_text("does not sit as chosen").wait_for(timeout=30_000)
+    page.get_by_text("does not sit as chosen").wait_for()
     assert source.silent_s is None
 
 
@@ -162,7 +164,7 @@ def test_a_door_that_was_shut_for_a_while_costs_nothing(
     reader, got = reading(source, 500)
     wait(lambda: len(got) > 50)
     house.door.stop()
-    page.get_by_text("kept and sent").wait_for(timeout=30_000)
+    page.get_by_text("kept and sent").wait_for()
     again = Door(
         replace(house.door.access, port=house.port),
         viser_port=house.viser.get_port(),
@@ -175,7 +177,7 @@ def test_a_door_that_was_shut_for_a_while_costs_nothing(
         reader.join()
         assert len(got) == 500
         check_numbers(got)
-        page.get_by_text("Sending as").wait_for(timeout=30_000)
+        page.get_by_text("Sending as").wait_for()
     finally:
         again.stop()
 
@@ -194,7 +196,7 @@ def test_a_computer_without_a_sensor_is_told(
 ) -> None:
     page, _ = visit(phone, open_house(taker=source))
     page.get_by_role("button").click()
-    page.get_by_text("No reading comes").wait_for(timeout=30_000)
+    page.get_by_text("No reading comes").wait_for()
 
 
 def test_plain_http_from_another_machine_is_explained(

@@ -47,7 +47,7 @@ def test_a_client_that_trusts_it_comes_in_by_each_name(certificate: Certificate,
         ssl=trusting(certificate), compression=None, max_size=None,
     ) as websocket:  # fmt: skip
         websocket.send(msgspec.msgpack.encode({"type": "ShareUrlRequest"}))
-        assert websocket.recv(timeout=10)
+        assert websocket.recv(timeout=60)
 
 
 def test_the_cookie_is_for_tls_only(certificate: Certificate, open_house: Any) -> None:

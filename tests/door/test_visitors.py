@@ -50,7 +50,7 @@ def test_a_viewer_sees_what_an_operator_does_and_moves_nothing(
         assert (house.slider.value, house.name.value, pressed) == (1.0, "", [])
         operator.send(set_value(house.slider, 0.75))
         wait(lambda: house.slider.value == 0.75)
-        assert viewer.recv(timeout=10)
+        assert viewer.recv(timeout=60)
 
 
 def test_the_page_says_who_looks(house: Any) -> None:

@@ -37,7 +37,7 @@ def found_in(path: Path) -> kept.Kept:
     return kept.kept(path.name, path.read_bytes())
 
 
-def wait_for(condition, seconds: float = 20.0) -> None:
+def wait_for(condition, seconds: float = 90.0) -> None:
     until = time.monotonic() + seconds
     while not condition() and time.monotonic() < until:
         time.sleep(0.01)

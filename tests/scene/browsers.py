@@ -37,7 +37,7 @@ def client(port: int) -> Iterator[Client]:
         yield made
 
 
-def until(said: Callable[[], object], seconds: float = 20.0) -> None:
+def until(said: Callable[[], object], seconds: float = 90.0) -> None:
     """Wait for what another thread does."""
     end = time.monotonic() + seconds
     while not said():

@@ -40,6 +40,7 @@ def open_page(
 ) -> Page:
     """A page on which ``node`` has been drawn; ``coarse`` is quicker where only words matter."""
     page = browser.new_page(viewport={"width": size[0], "height": size[1]})
+    page.set_default_timeout(PATIENCE_MS)
     page.goto(f"{address}?fixedDpr={0.25 if coarse else 1}")
     page.wait_for_function(DRAWN, arg=node, timeout=PATIENCE_MS)
     page.add_style_tag(content=NO_TOASTS)

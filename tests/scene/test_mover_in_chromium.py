@@ -76,6 +76,7 @@ class House:
 
     def open(self, query: str, size: tuple[int, int]) -> Page:
         page = self.browser.new_page(viewport={"width": size[0], "height": size[1]})
+        page.set_default_timeout(PATIENCE_MS)
         page.goto(f"{self.door.address}/?fixedDpr=1&{query}")
         page.wait_for_function(SETTLED, timeout=PATIENCE_MS)
         page.wait_for_function(SAYS, arg=self.visit.reason, timeout=PATIENCE_MS)

@@ -25,6 +25,7 @@ def page_file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 def test_it_plays_from_a_file_without_a_network(page_file: Path, browser: Browser, build_dir: Path) -> None:
     context = browser.new_context(offline=True, viewport={"width": 480, "height": 320})
     page = context.new_page()
+    page.set_default_timeout(PATIENCE_MS)
     asked: list[str] = []
     page.on("request", lambda r: asked.append(r.url) if r.url.startswith(("http", "ws")) else None)
     page.goto(page_file.as_uri())

@@ -43,6 +43,7 @@ def test_a_viewer_s_controls_are_still_and_an_operator_s_are_not(
     for token in ("to watch", "to operate"):
         context = browser.new_context(viewport={"width": 1100, "height": 760})
         pages[token] = page = context.new_page()
+        page.set_default_timeout(120_000)
         page.goto(door.access.address("127.0.0.1", door.access.port, token) + "&fixedDpr=1")
         page.get_by_role("button", name="Pause", exact=True).wait_for(timeout=120_000)
     watching, operating = pages.values()

@@ -85,6 +85,7 @@ def test_arrow_keys_in_a_real_browser_walk_the_town_to_a_target(browser: Browser
     """Simulated feet stroll to the first target; then a person takes the keys."""
     with mover("--kiosk", "--source", "sim:gestures?cadence=1.9") as (_, address):  # brisk: it is a way
         page = browser.new_page(viewport={"width": 480, "height": 270})
+        page.set_default_timeout(PATIENCE_MS)
         page.goto(f"{address}/?fixedDpr=1")
         score = "(n) => (document.querySelector('.mv-score')?.textContent ?? '').startsWith(n)"
         page.wait_for_function(score, arg="1 of 8", timeout=PATIENCE_MS)

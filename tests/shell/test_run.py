@@ -168,6 +168,7 @@ def test_one_click_saves_what_is_seen_as_a_page_that_needs_no_network(
     assert kept.name.startswith("sim-walk-Gyro-bias-")
     context = browser.new_context(offline=True, viewport={"width": 1100, "height": 700})
     alone = context.new_page()
+    alone.set_default_timeout(PATIENCE_MS)
     asked: list[str] = []
     alone.on("request", lambda r: asked.append(r.url) if r.url.startswith(("http", "ws")) else None)
     alone.goto(kept.as_uri())

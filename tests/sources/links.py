@@ -36,7 +36,7 @@ class Reader:
         """Its samples, without when they came."""
         return [s._replace(host_ns=0) for s in self.got if s.sensor == sensor]
 
-    async def until(self, condition: Callable[[], bool], seconds: float = 30.0) -> None:
+    async def until(self, condition: Callable[[], bool], seconds: float = 90.0) -> None:
         """Wait; a reader that failed is seen at once."""
         async with asyncio.timeout(seconds):
             while not condition():

@@ -20,8 +20,8 @@ from app.sources.spec import parse_spec
 from app.sources.udp import UdpSource
 from tests.sources.links import Reader
 
-COUNT = 4000
-#: Sends COUNT messages of a sensor in a second, from a process of its own.
+COUNT, RATE_HZ = 1500, 500
+#: Sends COUNT messages of a sensor, from a process of its own.
 SENDER = f"""
 import socket, sys, time
 sys.path.insert(0, {os.getcwd()!r})
@@ -32,7 +32,7 @@ made = [encode_binary(1, [sample]) for sample in walk({COUNT})]
 sys.stdin.readline()
 began = time.monotonic()
 for i, data in enumerate(made):
-    time.sleep(max(began + i / {COUNT} - time.monotonic(), 0.0))
+    time.sleep(max(began + i / {RATE_HZ} - time.monotonic(), 0.0))
     s.sendto(data, ("127.0.0.1", int(sys.argv[1])))
 """
 
@@ -44,7 +44,7 @@ def bound() -> Iterator[socket.socket]:
         yield made
 
 
-def caught(by: Catcher, count: int, seconds: float = 30.0) -> list[Datagram]:
+def caught(by: Catcher, count: int, seconds: float = 90.0) -> list[Datagram]:
     found: list[Datagram] = []
     end = time.monotonic() + seconds
     while len(found) < count:
@@ -72,10 +72,10 @@ def test_datagrams_come_whole_in_order_with_sender_and_time(bound: socket.socket
     assert before_ns <= stamps[0] <= stamps[-1] <= time.monotonic_ns()
 
 
-def test_nothing_is_lost_while_the_program_holds_its_interpreter_for_a_second(
+def test_nothing_is_lost_while_the_program_holds_its_interpreter_for_long(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    """With the socket's usual room, not what this machine may give."""
+    """With the socket's usual room, not what this machine may give: it holds about 500 messages."""
     monkeypatch.setattr(udp, "BUFFER_BYTES", 200_000)
 
     async def main() -> None:
@@ -86,8 +86,8 @@ def test_nothing_is_lost_while_the_program_holds_its_interpreter_for_a_second(
             assert sender.stdin is not None
             sender.stdin.write("go\n")
             sender.stdin.flush()
-            await reader.until(lambda: len(reader.got) > 100)
-            ctypes.PyDLL(None).usleep(1_000_000)  # a call that does not let go of the interpreter
+            await reader.until(lambda: len(reader.got) > 30)
+            ctypes.PyDLL(None).usleep(2_000_000)  # a call that does not let go of the interpreter
             await reader.until(lambda: len(reader.got) >= COUNT)
         assert [s.seq for s in reader.got] == list(range(COUNT))
         assert source.info.line == {}
