@@ -25,6 +25,7 @@ with atheris.instrument_imports(include=["app.formats"]):
     from app.formats.wire import datagrams, identify, message
     from app.formats.wire.catalogue import KINDS, Decoder
     from app.formats.wire.talk import Talk
+    from app.formats.wire.warmth import COLDEST_C, HOTTEST_C
 
 from app.motion.samples import Sample
 
@@ -38,6 +39,7 @@ def check(samples: list[Sample], decoder: Decoder) -> None:
     counters = decoder.counters
     assert counters.bytes_fed == counters.bytes_good + counters.bytes_skipped + counters.bytes_pending
     assert counters.bytes_pending <= KEPT
+    assert decoder.temperature_c is None or COLDEST_C <= decoder.temperature_c <= HOTTEST_C
     for before, after in pairwise(samples):
         assert before.seq + 1 == after.seq
         assert before.device_ns < after.device_ns
@@ -125,6 +127,8 @@ def main() -> None:
     """Hand over to libFuzzer."""
     folder = Path(__file__).resolve().parent.parent / "build" / "fuzz"
     seeds(folder)
+    for found in (argument for argument in sys.argv[1:] if not argument.startswith("-")):
+        Path(found).mkdir(parents=True, exist_ok=True)
     atheris.Setup([*sys.argv, str(folder)], one)
     atheris.Fuzz()
 

@@ -25,7 +25,7 @@ def folder() -> Path:
 
 def key_of(info: SourceInfo, sensor: str) -> str:
     """What names a sensor: its serial number, else where it is read and what it is called there."""
-    return info.serials.get(sensor) or f"{info.name} {sensor}"
+    return info.serials.get(sensor) or f"{info.places.get(sensor, info.name)} {sensor}"
 
 
 def meant_for(info: SourceInfo) -> bool:

@@ -41,6 +41,7 @@ class SourceInfo:
     line: Mapping[str, int] = field(default_factory=dict)  # what became of a live link's bytes, in words
     clocks: Mapping[str, ClockLine] = field(default_factory=dict)  # a recording's, by sensor
     serials: Mapping[str, str] = field(default_factory=dict)  # serial numbers, by sensor, where known
+    places: Mapping[str, str] = field(default_factory=dict)  # where each sensor is read, where places differ
     temperatures: Mapping[str, float] = field(default_factory=dict)  # °C now, by sensor, where told
     rod_m: float | None = None  # the sensor hangs on a pendulum of this length
     outline: Outline | None = None

@@ -38,6 +38,7 @@ class Together(Live):
             assumed=tuple(f"{_names(info)}: {sentence}" for info in infos for sentence in info.assumed),
             dropped=summed(info.dropped for info in infos),
             line=summed(info.line for info in infos),
+            places={sensor: info.name for info in infos for sensor in info.sensors},
             temperatures={sensor: c for info in infos for sensor, c in info.temperatures.items()},
             serials={sensor: serial for info in infos for sensor, serial in info.serials.items()},
         )

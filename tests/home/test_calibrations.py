@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -75,6 +76,10 @@ def test_serial_numbers_go_before_names() -> None:
     info = SourceInfo("serial:/dev/ttyUSB0", "GX1", serials={"left": "1234"})
     assert calibrations.key_of(info, "left") == "1234"
     assert calibrations.key_of(info, "right") == "serial:/dev/ttyUSB0 right"
+    both = replace(
+        info, name="serial:/dev/ttyUSB0, serial:/dev/ttyUSB1", places={"right": "serial:/dev/ttyUSB1"}
+    )
+    assert calibrations.key_of(both, "right") == "serial:/dev/ttyUSB1 right"
 
 
 def test_recordings_are_left_as_they_were_recorded() -> None:

@@ -9,7 +9,8 @@ from hypothesis import strategies as st
 
 from app.formats.mounting import AS_GIVEN
 from app.formats.options import Options
-from app.formats.wire import datagrams, lines, ngimu, ximu3
+from app.formats.wire import datagrams, lines, ngimu, ximu3, ximu3_talk
+from app.formats.wire.catalogue import Model
 from app.formats.wire.datagrams import Datagrams
 from app.formats.wire.message import encode_binary, encode_json
 from app.motion.samples import Sample
@@ -64,6 +65,22 @@ def test_two_sensors_and_a_board_on_one_port() -> None:
     counts = {name: sum(s.sensor == name for s in got) for name in ("left", "right", "chest")}
     assert counts["chest"] == 60
     assert min(counts.values()) >= 55
+
+
+def test_temperatures_are_told_by_sensor_whichever_way_they_come() -> None:
+    box = Datagrams(names={"10.0.0.7": "left", "10.0.0.8": "right"})
+    devices: dict[str, Model] = {"10.0.0.7": ngimu.NgimuDevice(), "10.0.0.8": ximu3_talk.Ximu3Device()}
+    for a in walk(300):
+        for host, device in devices.items():
+            if data := device.measure(a):
+                box.feed(data, (host, 5), a.host_ns)
+    message = encode_binary(1, [walk(1)[0]._replace(sensor="chest")], temperature_c=36.5)
+    box.feed(message, ("10.0.0.9", 5), 0)
+    told = box.temperatures()
+    assert set(told) == {"left", "right", "chest"}
+    assert told["chest"] == 36.5
+    assert 24.0 <= told["left"] < 24.1
+    assert 24.0 <= told["right"] < 24.1
 
 
 def test_a_board_that_comes_back_from_another_port_is_the_same() -> None:
