@@ -20,7 +20,7 @@ from app.scene.follow import Glide, middle
 from app.scene.ground import Ground
 from app.scene.head import head
 from app.scene.once import Once
-from app.scene.outline import outline_lines
+from app.scene.outline import outline_nodes
 from app.scene.panel import Panel
 from app.scene.reference import reference_line
 from app.scene.shoe import SENSOR_HEIGHT_M
@@ -56,7 +56,7 @@ class Scene:
         self._ground = Ground(self._server.scene, dark=True)
         self._stage = Stage(self._server.scene)
         self._reference = Once[Reference](partial(reference_line, self._server.scene))
-        self._outline = Once[Outline](partial(outline_lines, self._server.scene))
+        self._outline = Once[Outline](partial(outline_nodes, self._server.scene))
         self._theme(dark=True)
         self.panel = Panel(self._controls, self._set_view, self._view)
         self.head = head(self.panel.keys(), self.panel.resets())

@@ -19,7 +19,9 @@ from app.scene.glb import Part, glb, joined
 Floats = NDArray[np.float32]
 
 #: How broad a ribbon is beside a line of as many pixels: as that line looks where the page shows the shoe.
-WIDTH_M = 0.004
+WIDTH_M = 0.0025
+#: Segments in one mesh: of a long way what is out of view is not drawn.
+STRETCH = 512
 #: What a byte can tell of a width, in pixels.
 MOST_PIXELS = 16.0
 HERE = Path(__file__).parent
@@ -33,10 +35,15 @@ def script() -> str:
 
 def ribbon(segments: Floats, colour: Rgb, pixels: float) -> bytes:
     """Segments [k, 2, 3] in *n*, at least one, as binary glTF; ``pixels``: of the line that it stands for."""
-    ends = np.flatnonzero((segments[1:, 0] != segments[:-1, 1]).any(axis=1)) + 1
+    stretches = np.split(segments, range(STRETCH, len(segments), STRETCH))
     paint = linear(colour)[None]
-    parts = [_chain(chain, paint, pixels) for chain in np.split(segments, ends)]
-    return glb([joined("ribbon", parts)])
+    return glb([_stretch(f"ribbon_{i}", part, paint, pixels) for i, part in enumerate(stretches)])
+
+
+def _stretch(name: str, segments: Floats, paint: Floats, pixels: float) -> Part:
+    """Part of the way as one mesh, also where the pen was up."""
+    ends = np.flatnonzero((segments[1:, 0] != segments[:-1, 1]).any(axis=1)) + 1
+    return joined(name, [_chain(chain, paint, pixels) for chain in np.split(segments, ends)])
 
 
 def _chain(chain: Floats, paint: Floats, pixels: float) -> Part:

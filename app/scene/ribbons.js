@@ -7,8 +7,9 @@
     shader.vertexShader = "attribute vec4 _side;\nuniform float ssPixel;\n" + shader.vertexShader.replace(
       "#include <project_vertex>",
       `float ssAway = -(modelViewMatrix * vec4(transformed, 1.0)).z;
-      float ssMore = max(0.0, 0.5 * ssPixel * ssAway - HALF_M);
-      transformed += _side.xyz * (MOST_PIXELS * _side.w * ssMore);
+      float ssPixels = MOST_PIXELS * _side.w;
+      float ssHalf = 0.5 * (ssPixels - 1.0) * ssPixel * ssAway; // its edges are lines of a pixel
+      transformed += _side.xyz * max(0.0, ssHalf - HALF_M * ssPixels);
       #include <project_vertex>`,
     );
   };
