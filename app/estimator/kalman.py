@@ -190,18 +190,15 @@ def begin_walk(state: KalmanState) -> None:
 @part
 def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, dt_s: float) -> None:
     """Strapdown: the mean of both samples, turned at the half step; then P."""
-    half = 0.5 * dt_s
-    turn = (
-        (0.5 * (rate_before_b[0] + state.w0) - state.gyro_bias[0]) * half,
-        (0.5 * (rate_before_b[1] + state.w1) - state.gyro_bias[1]) * half,
-        (0.5 * (rate_before_b[2] + state.w2) - state.gyro_bias[2]) * half,
-    )
+    bias = state.gyro_bias
+    before_b = (rate_before_b[0] - bias[0], rate_before_b[1] - bias[1], rate_before_b[2] - bias[2])
+    after_b = (state.w0 - bias[0], state.w1 - bias[1], state.w2 - bias[2])
     force_b = (
         0.5 * (force_before_b[0] + state.f0) - state.force_bias[0],
         0.5 * (force_before_b[1] + state.f1) - state.force_bias[1],
         0.5 * (force_before_b[2] + state.f2) - state.force_bias[2],
     )
-    half_turn = exponential(turn)
+    half_turn = exponential(half_turn_between(before_b, after_b, dt_s))
     q_half = multiply((state.q0, state.q1, state.q2, state.q3), half_turn)
     state.q0, state.q1, state.q2, state.q3 = normalise(multiply(q_half, half_turn))
     force_n = rotate(q_half, force_b)
@@ -224,6 +221,20 @@ def predict(state: KalmanState, force_before_b: Vector, rate_before_b: Vector, d
     state.P[HEIGHT_AT, HEIGHT_AT] += rate2 * PIVOT_NOISE**2 * dt_s
     add_variance(state.P, GYRO_AT, RATE_WANDER**2 * dt_s)
     add_variance(state.P, FORCE_AT, FORCE_WANDER**2 * dt_s)
+
+
+@part
+def half_turn_between(before_b: Vector, after_b: Vector, dt_s: float) -> Vector:
+    """Half of the turn between two samples, of a rate that changes evenly: its mean, and what comes of its
+    axis turning meanwhile, Δt²/12 of ω × ω′ (W. Magnus' series, 1954; known as coning)."""
+    x, y, z = before_b
+    u, v, w = after_b
+    mean, cone = 0.25 * dt_s, dt_s * dt_s / 24.0
+    return (
+        mean * (x + u) + cone * (y * w - z * v),
+        mean * (y + v) + cone * (z * u - x * w),
+        mean * (z + w) + cone * (x * v - y * u),
+    )
 
 
 @part

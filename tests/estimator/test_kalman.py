@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from scipy.spatial.transform import Rotation
 
+from app.estimator.kalman import half_turn_between
 from app.estimator.tracker import Tracker
 from app.motion.samples import SAMPLE_WIDTH, Samples
 from app.rotation import from_yaw_pitch_roll, rotate
@@ -159,6 +161,16 @@ def test_a_clipped_gyro_is_doubted_about_its_own_axis_and_mended() -> None:
     assert abs(true_turn - yaw) < 0.5 * lost
     P = clipped.state["P"][0]
     assert P[8, 8] > max(100 * P[7, 7], 0.05**2)
+
+
+def test_the_turn_of_a_rate_that_changes_evenly_minds_its_axis() -> None:
+    before, after, dt_s = np.array([8.0, 0.0, 1.0]), np.array([1.0, 9.0, -1.0]), 0.01
+    half = half_turn_between((8.0, 0.0, 1.0), (1.0, 9.0, -1.0), dt_s)
+    true = Rotation.identity()
+    for u in (np.arange(200) + 0.5) / 200:
+        true = true * Rotation.from_rotvec((before + u * (after - before)) * dt_s / 200)
+    off = (Rotation.from_rotvec(0.5 * dt_s * (before + after)).inv() * true).magnitude()
+    assert (Rotation.from_rotvec(2.0 * np.array(half)).inv() * true).magnitude() < 0.02 * off
 
 
 def test_two_starts_in_mid_walk_still_find_level() -> None:
