@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from app.formats.wire.stream import Counters
-from app.health import FEET, light_of
+from app.health import FEET, light_of, percent
 from app.motion.basics import Role
 from app.motion.health import Health, Light
 from app.motion.snapshot import Snapshot
@@ -73,5 +73,5 @@ def _with(told: Health, role: Role, share: float) -> Health:
 
 
 def _words(role: Role, share: float) -> str:
-    words = f"{100.0 * share:.2g} % of packets damaged in the last 10 s: check cable, plug and baud rate"
+    words = f"{percent(share)} of packets damaged in the last 10 s: check cable, plug and baud rate"
     return f"{FEET[role]}: {words}"

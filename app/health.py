@@ -197,6 +197,11 @@ DISTURBANCE = 0.20
 DRIFT_PPM = 500.0
 
 
+def percent(share: float) -> str:
+    """``0.35 %``, ``7.5 %``, ``100 %``."""
+    return f"{100.0 * share:.0f} %" if share > 0.0995 else f"{100.0 * share:.2g} %"
+
+
 def judge(role: Role, recent: Recent, uses_field: bool) -> tuple[Light, str]:
     """The worst of what is seen: its light, and what it is and what to do in words.
 
@@ -218,17 +223,17 @@ def _transport(r: Recent) -> list[tuple[Light, str]]:
     if r.silent_s > SILENT_S:
         found.append((Light.RED, f"silent for {r.silent_s:.1f} s: is it on, charged and in reach?"))
     if r.lost >= 3 and (light := light_of(r.lost / all_of, LOST)):
-        share = f"{100.0 * r.lost / all_of:.2g} % of samples lost in the last 10 s"
+        share = f"{percent(r.lost / all_of)} of samples lost in the last 10 s"
         found.append((light, f"{share}: move the receiver closer"))
     if r.late_ms is not None and (light := light_of(r.late_ms, LATE_MS)):
         found.append(
             (light, f"samples come up to {r.late_ms:.0f} ms late: a shorter link, or fewer devices on it")
         )
     if r.rejected >= 3 and (light := light_of(r.rejected / came, SPOILT)):
-        share = f"{100.0 * r.rejected / came:.2g} % of samples are no use (not finite, or out of order)"
+        share = f"{percent(r.rejected / came)} of samples are no use (not finite, or out of order)"
         found.append((light, f"{share}: check cable and baud rate"))
     if r.duplicated >= 3 and (light := light_of(r.duplicated / came, SPOILT)):
-        share = f"{100.0 * r.duplicated / came:.2g} % of samples came twice"
+        share = f"{percent(r.duplicated / came)} of samples came twice"
         found.append((light, f"{share}: is it sent over two ways?"))
     if 0.0 < r.rate_hz < SLOW_HZ:
         found.append(
@@ -245,7 +250,7 @@ def _sensing(r: Recent, uses_field: bool) -> list[tuple[Light, str]]:
     found = []
     usual, most = GRAVITY_MPS2
     if r.samples and (light := light_of(r.saturated / r.samples, SATURATED)):
-        share = f"{100.0 * r.saturated / r.samples:.2g} % of samples at the end of the sensor's range"
+        share = f"{percent(r.saturated / r.samples)} of samples at the end of the sensor's range"
         found.append((light, f"{share}: choose a larger range"))
     if r.stance_mps2 is not None and (light := light_of(r.stance_mps2, STANCE_MPS2)):
         shakes = f"it shakes by {r.stance_mps2:.1f} m/s² while the foot stands"

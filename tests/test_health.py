@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from app.clocks import KnownClock, LiveClock
-from app.health import BINS, Monitor, judge, report
+from app.health import BINS, Monitor, judge, percent, report
 from app.motion.basics import GaitPhase, Role
 from app.motion.health import Health, Light, Recent
 from app.motion.samples import Sample
@@ -181,3 +181,11 @@ def test_the_report_is_json() -> None:
     recent, light, reason = seen(watched(stream(5.0)))
     told = report({"right": Health(100.0, 500, {"repeated time": 2}, 0, 1, recent, light, reason)})
     assert json.loads(json.dumps(told))["right"]["last_10_s"]["samples"] == 500
+
+
+@pytest.mark.parametrize(
+    ("share", "told"),
+    [(0.0035, "0.35 %"), (0.03, "3 %"), (0.0994, "9.9 %"), (0.0996, "10 %"), (1.0, "100 %")],
+)
+def test_a_share_is_told_in_percent(share: float, told: str) -> None:
+    assert percent(share) == told

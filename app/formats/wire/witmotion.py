@@ -22,7 +22,7 @@ from app.formats.wire.talk import Ask, Script
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
 from app.formats.wire.warmth import believed, warming
 from app.motion.basics import Quaternion, Vector
-from app.motion.samples import Sample
+from app.motion.samples import GAP_NS, Sample
 
 FASTEST_HZ = 200.0
 BAUDS = (115200, 9600, 921600, 460800, 38400)
@@ -79,6 +79,9 @@ class WitmotionDecoder:
         self._clock = DeviceClock(1_000_000, 40)
         self._arrival = ArrivalClock(rate_hz)
         self._timed: bool | None = None
+        self._dated = 0  # bursts in a row that tell their time
+        self._untimed_ns = 0  # the last stamp by arrival
+        self._ahead_ns = 0  # what keeps its calendar behind that
         self._burst: dict[int, bytes] = {}
         self._kinds: frozenset[int] | None = None  # of a whole burst
         self._newest = b""  # frame of the acceleration
@@ -126,11 +129,22 @@ class WitmotionDecoder:
         return self._maker.make(device_ns, host_ns, force, rate, field, 0, q)
 
     def _stamp(self, frame: bytes | None, host_ns: int) -> int | None:
+        """By its calendar where it sends that: from the first burst on, or from two in a row on.
+
+        What it sent before it was set up comes without, and so does a stream joined behind its first frame.
+        """
+        self._dated = 0 if frame is None else self._dated + 1
         if self._timed is None:
             self._timed = frame is not None
-        if not self._timed:
-            return self._arrival.stamp(host_ns)
-        return None if frame is None else self._clock.stamp(_milliseconds(frame), host_ns)
+        if not self._timed and self._dated < 2:
+            self._untimed_ns = self._arrival.stamp(host_ns)
+            return self._untimed_ns
+        stamp_ns = None if frame is None else self._clock.stamp(_milliseconds(frame), host_ns)
+        if stamp_ns is None:
+            return None
+        if not self._timed:  # never back, nor years ahead: a gap
+            self._timed, self._ahead_ns = True, self._untimed_ns + GAP_NS + 1 - stamp_ns
+        return stamp_ns + self._ahead_ns
 
 
 def _words(frame: bytes) -> Vector:

@@ -21,7 +21,7 @@ from app.formats.wire.witmotion import (
     holds,
     start_up,
 )
-from app.motion.samples import Sample
+from app.motion.samples import GAP_NS, Sample
 from tests.formats.wire.protocols import at_rest, converse, result
 
 ONE_G = bytes.fromhex("55 51 0000 0000 0008 C409 7B")
@@ -98,6 +98,39 @@ def test_a_clock_that_was_never_set_runs_all_the_same() -> None:
     stamps = [s.device_ns for i, burst in enumerate(bursts) for s in decoder.feed(burst, i * 10**9)]
     assert np.diff(stamps).tolist() == [10**9] * (len(stamps) - 1)
     assert len(stamps) == 6
+
+
+@pytest.mark.parametrize("start_ns", [0, 9_800 * DAY_NS])
+@pytest.mark.parametrize("before", [1, 2, 30])
+def test_time_that_is_switched_on_is_believed_from_then_on(start_ns: int, before: int) -> None:
+    without, encoder, decoder = (
+        WitmotionEncoder(),
+        WitmotionEncoder(timed=True),
+        WitmotionDecoder("foot", rate_hz=100),
+    )
+    got, host_ns = [], 5 * 10**13
+    for i, sample in enumerate(at_rest(200)):
+        host_ns += 10_000_000 if i % 2 else 30_000_000  # its arrivals would tell another rate
+        sent = (without if i < before else encoder).encode(
+            sample._replace(device_ns=start_ns + sample.device_ns)
+        )
+        got += decoder.feed(sent, host_ns)
+    steps = np.diff([sample.device_ns for sample in got])
+    assert len(got) >= 199
+    assert (steps > 0).all()
+    assert (steps > GAP_NS).sum() == 1
+    assert steps.max() < 2 * GAP_NS
+    assert (steps[before + 2 :] == 10_000_000).all()
+
+
+def test_one_frame_that_passes_for_a_time_changes_nothing() -> None:
+    decoder = WitmotionDecoder("foot")
+    odd = framed(TIME, bytes([26, 1, 1, 0, 0, 0, 0, 0]))
+    got = [
+        s for i in range(60) for s in decoder.feed((odd if i == 30 else b"") + ONE_G + SPIN, i * 10_000_000)
+    ]
+    assert len(got) >= 59
+    assert np.diff([sample.device_ns for sample in got]).max() < GAP_NS
 
 
 def test_setting_it_up() -> None:
