@@ -197,8 +197,8 @@ class NgimuDecoder:
         stamp_ns = self._clock.stamp(nanoseconds(tag), host_ns)
         if stamp_ns is None:
             return None
-        if not self._timed and self._untimed_ns is not None:  # never back: a gap instead
-            self._ahead_ns = max(0, self._untimed_ns + GAP_NS + 1 - stamp_ns)
+        if not self._timed and self._untimed_ns is not None:  # never back, nor a century ahead: a gap
+            self._ahead_ns = self._untimed_ns + GAP_NS + 1 - stamp_ns
         self._timed = True
         return stamp_ns + self._ahead_ns
 

@@ -9,6 +9,7 @@ from app.formats.units import G_MPS2
 from app.formats.wire.ngimu import (
     IDENTIFY,
     NgimuDecoder,
+    NgimuEncoder,
     bundle,
     framed,
     message,
@@ -17,6 +18,8 @@ from app.formats.wire.ngimu import (
     time_tag,
     unframed,
 )
+from app.motion.samples import GAP_NS
+from tests.formats.wire.protocols import at_rest
 
 READING = (1.0, 2.0, 3.0, 0.0, 0.0, 1.0, 20.0, 0.0, -40.0, 1013.0)
 SENSORS = message(b"/sensors", READING)
@@ -108,3 +111,18 @@ def test_the_first_packet_says_for_all_whether_they_tell_their_time(first: int) 
     ]
     assert stamps == sorted(set(stamps))
     assert decoder.counters.dropped == 6 - len(stamps) > 0
+
+
+@pytest.mark.parametrize("began_s", [0, 1000, 3_990_000_000])  # since 1900: a clock not set, or set
+def test_time_told_later_goes_on_behind_a_gap(began_s: int) -> None:
+    decoder, encoder = NgimuDecoder("foot"), NgimuEncoder()
+    got = []
+    for i, sample in enumerate(at_rest(20)):
+        packet = encoder.encode(sample._replace(device_ns=began_s * 10**9 + sample.device_ns))
+        if i < 5:
+            packet = packet[:8] + (1).to_bytes(8) + packet[16:]  # immediately
+        got += decoder.feed(packet, 7 * 10**12 + sample.device_ns)
+    steps = np.diff([sample.device_ns for sample in got])
+    assert len(got) == 20
+    assert GAP_NS < steps[4] < 2 * GAP_NS
+    np.testing.assert_allclose(np.delete(steps, 4), 10_000_000, atol=1)
