@@ -45,7 +45,7 @@ def straight(sleeve: Floats, waiting: int, x: float, y: float, z: float, toleran
 
 @kernel
 def thin(
-    points: Any, sleeve: Floats, waiting: int, tolerance_m: float, apart_m: float, kept: Floats
+    points: Floats, sleeve: Floats, waiting: int, tolerance_m: float, apart_m: float, kept: Floats
 ) -> tuple[int, int]:
     """The corners of a path: points [k, ≥3] → ``kept`` [k, 3]; how many, and how many now wait.
 
@@ -53,7 +53,7 @@ def thin(
     """
     count = 0
     for i in range(points.shape[0]):
-        x, y, z = float(points[i, 0]), float(points[i, 1]), float(points[i, 2])
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
         dx, dy, dz = x - sleeve[waiting, 0], y - sleeve[waiting, 1], z - sleeve[waiting, 2]
         if dx * dx + dy * dy + dz * dz < apart_m * apart_m:
             continue
@@ -79,7 +79,8 @@ def _straightened(chain: Segments, tolerance_m: float) -> Segments:
     """Segments that hang together, as fewer."""
     sleeve, kept = np.empty((SLEEVE + 1, 3)), np.empty((len(chain) + 2, 3))
     sleeve[0] = kept[0] = chain[0, 0]
-    count, _ = thin(chain[:, 1], sleeve, 0, tolerance_m, 0.0, kept[1:])
+    ends = np.ascontiguousarray(chain[:, 1], np.float64)  # as rows are: ``thin`` is compiled for one kind
+    count, _ = thin(ends, sleeve, 0, tolerance_m, 0.0, kept[1:])
     kept[count + 1] = chain[-1, 1]
     return segments_of(kept[: count + 2])
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from app.blocks import Blocks
 from app.estimator.compass import FOOTPRINTS, CompassWatch
-from app.estimator.corrections import EVENT_WIDTH, correct
+from app.estimator.corrections import EVENT_WIDTH
 from app.estimator.methods import METHODS
 from app.estimator.smoother import smooth
 from app.estimator.strides import Contact, lift_above_line, stride_to
@@ -48,15 +48,14 @@ def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
         rotate((1.0, 0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
         multiply(conjugate(from_yaw(0.1)), from_yaw(0.1))
 
-    def corrections() -> None:
-        correct(rows, 0, samples.table(0, 1), event)
+    def strides() -> None:
         stride_to(Contact(0.0, (0.0, 0.0, 0.0), 0.0), rows, event, 1, 0.0)
         lift_above_line(rows, event)
 
-    def kalman() -> None:
-        tracker = Tracker(Settings(estimator="kalman"))
+    def walk() -> None:
+        tracker = Tracker(Settings(estimator=estimator))
         tracker.advance(samples)
-        METHODS["kalman"].correct(rows, 0, samples.table(0, 1), event, tracker.state)
+        METHODS[estimator].correct(rows, 0, samples.table(0, 1), event, tracker.state)
 
     def trails() -> None:
         TrailBuilder("warm").add(rows)
@@ -73,12 +72,12 @@ def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
 
     yield "orientations", orientations
     if estimator == "kalman":
-        yield "the Kalman filter", kalman
+        yield "the Kalman filter", walk
     else:
-        yield "the papers' estimator", lambda: Tracker(Settings()).advance(samples)
+        yield "the papers' estimator", walk
         yield "the look at the magnetic field", field
         yield "the search for gains", search
-    yield "corrections", corrections
+    yield "strides", strides
     yield "trails", trails
 
 

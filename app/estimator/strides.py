@@ -105,8 +105,8 @@ def lift_above_line(rows: Floats, event: Floats) -> float:
 
     The line is taken over the horizontal way covered, so that a stair's own height is not lift.
     """
-    start_n, end_n = event[_START : _START + 3], event[_END : _END + 3]
-    north, east, climb = end_n[0] - start_n[0], end_n[1] - start_n[1], start_n[2] - end_n[2]
+    start_n = (event[_START], event[_START + 1], event[_START + 2])
+    north, east, climb = event[_END] - start_n[0], event[_END + 1] - start_n[1], start_n[2] - event[_END + 2]
     squared = north * north + east * east
     best = 0.0
     for i in range(rows.shape[0]):
