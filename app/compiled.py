@@ -94,7 +94,14 @@ KERNELS = sources_hash()
 os.environ["NUMBA_CACHE_DIR"] = str(choose_cache_folder(KERNELS))
 
 import numba  # noqa: E402  (the folder has to be known first)
+from llvmlite.binding import ffi as llvm  # noqa: E402
 from numba.extending import register_jitable  # noqa: E402
+
+# Left out while compiling, a tenth of it: a record's type spelled out in full at every pass, and numba's
+# own note of every call of LLVM, for each compilation that is under way.
+numba.types.Record.__repr__ = numba.types.Type.__repr__  # type: ignore[method-assign]
+with contextlib.suppress(AttributeError):
+    llvm.lib._lock._cblist.clear()
 
 #: No kernel is called from C; numba's types do not know the option.
 _OPTIONS: Any = {"no_cfunc_wrapper": True}
