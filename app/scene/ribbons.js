@@ -1,7 +1,7 @@
 // A ribbon is at least as broad as the line that it stands for, in pixels, from however far away it is seen.
 (() => {
   const pixel = { value: 0 }; // what a pixel covers a metre away, metres
-  const known = new WeakSet();
+  let kinds = 0; // of material that know it
   const widen = (shader) => {
     shader.uniforms.ssPixel = pixel;
     shader.vertexShader = "attribute vec4 _side;\nuniform float ssPixel;\n" + shader.vertexShader.replace(
@@ -13,22 +13,28 @@
       #include <project_vertex>`,
     );
   };
-  const look = (object) => {
-    const material = object.material;
-    if (!material || known.has(material) || !object.geometry.attributes._side) return false;
-    known.add(material);
-    material.onBeforeCompile = widen;
-    material.needsUpdate = true;
-    return true;
+  // Set for the kinds of material, not for each: a ribbon drawn once without it would have its shader made twice.
+  // What is no ribbon has no sides, and is drawn as before.
+  const kind = (object) => Object.getPrototypeOf(object.material);
+  const prepare = (viewer) => {
+    const late = [];
+    for (const [name, node] of Object.entries(viewer.nodeRefFromName))
+      if (node && /^\/ned\/(trail\/.*\/piece_|outline\/)/.test(name))
+        node.traverse((object) => {
+          const sides = object.material && object.geometry.attributes._side;
+          if (sides && kind(object).onBeforeCompile !== widen) late.push(object);
+        });
+    for (const object of late) object.material.needsUpdate = true;
+    for (const what of new Set(late.map(kind))) {
+      what.onBeforeCompile = widen;
+      kinds += 1;
+    }
+    if (late.length && viewer.requestRender) viewer.requestRender();
   };
   setInterval(() => {
     const viewer = window.__viserMutable;
     if (!viewer || !viewer.camera || !viewer.canvas || document.hidden) return;
     pixel.value = (2 * Math.tan((viewer.camera.fov * Math.PI) / 360)) / Math.max(1, viewer.canvas.clientHeight);
-    let changed = false;
-    for (const [name, node] of Object.entries(viewer.nodeRefFromName))
-      if (node && /^\/ned\/(trail\/.*\/piece_|outline\/)/.test(name))
-        node.traverse((object) => { changed = look(object) || changed; });
-    if (changed && viewer.requestRender) viewer.requestRender();
+    if (kinds < 2) prepare(viewer); // of the strips, of their edges
   }, 200);
 })();
