@@ -42,8 +42,9 @@ AGAIN_S = 1.0
 ASKED_AGAIN = 2
 #: Just opened, or just started, it may take longer: a board boots, a GX1's clock is measured.
 SILENT_AT_FIRST_S = 8.0
-#: Bytes that make no sample for so long: it was set to something else.
-FRUITLESS_S = 10.0
+#: Bytes that make no sample for so long: it was set to something else. Where samples came it lost its
+#: settings meanwhile, with its power; at first a clock may still be measured.
+FRUITLESS_S, FRUITLESS_AT_FIRST_S = 3.0, 10.0
 FIRST_BAUD = 115200
 #: A port that hangs is left behind after so long.
 CLOSE_S = 1.5
@@ -217,7 +218,7 @@ class SerialPort(Live):
     async def _read(self, port: Port) -> None:
         """Decode what comes, until it ends in ``PortLostError``."""
         patience_s, tries = SILENT_AT_FIRST_S, 0
-        sample_s = time.monotonic()
+        sample_s, fruitless_s = time.monotonic(), FRUITLESS_AT_FIRST_S
         while True:
             arrived = await port.read(patience_s)
             if not arrived:
@@ -230,9 +231,9 @@ class SerialPort(Live):
             patience_s, tries = SILENT_S, 1 + ASKED_AGAIN
             for host_ns, data in arrived:
                 if self._take(host_ns, data):
-                    sample_s = time.monotonic()
+                    sample_s, fruitless_s = time.monotonic(), FRUITLESS_S
             self._ask_its_temperature(port)
-            if time.monotonic() - sample_s > FRUITLESS_S:
+            if time.monotonic() - sample_s > fruitless_s:
                 raise PortLostError(f"{port.path}: what comes makes no samples: starting the sensor anew")
 
     def _ask_its_temperature(self, port: Port) -> None:
