@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.gestures.state import BACK, STEP, TOE_UP, TWIST, UNKNOWN, Foot
 
 _REST_S = 0.4  # time constant of level and bias
@@ -18,7 +18,7 @@ _QUIET_S = 0.05
 REST_CYCLES = 3.6  # from onset to onset, in lengths of an action: more is a rest between
 
 
-@kernel
+@part
 def reset_foot(foot: Foot) -> None:
     """Back to rest; level and bias stay."""
     foot.moving, foot.sure, foot.below_s = 0.0, 0.0, 0.0
@@ -26,14 +26,14 @@ def reset_foot(foot: Foot) -> None:
     forget_actions(foot)
 
 
-@kernel
+@part
 def forget_actions(foot: Foot) -> None:
     """A new bout begins."""
     foot.kind, foot.energy, foot.actions, foot.size = UNKNOWN, 0.0, 0.0, 0.0
     foot.on_s, foot.previous_on_s, foot.end_s, foot.duration_s = -1e9, -1e9, -1e9, 0.0
 
 
-@kernel
+@part
 def find_level(foot: Foot, f: tuple[float, float, float], w: tuple[float, float, float], dt_s: float) -> None:
     """Gravity and bias follow the readings slowly while the foot rests, at once at the first sample."""
     norm = math.sqrt(f[0] * f[0] + f[1] * f[1] + f[2] * f[2])
@@ -61,7 +61,7 @@ def find_level(foot: Foot, f: tuple[float, float, float], w: tuple[float, float,
         foot.bz += share * (w[2] - foot.bz)
 
 
-@kernel
+@part
 def level_rates(foot: Foot, w: tuple[float, float, float]) -> tuple[float, float, float]:
     """(yaw, pitch, roll) rates about down, and about the horizontal right and toe axes, bias removed."""
     x, y, z = w[0] - foot.bx, w[1] - foot.by, w[2] - foot.bz
@@ -74,7 +74,7 @@ def level_rates(foot: Foot, w: tuple[float, float, float]) -> tuple[float, float
     return yaw, pitch, math.sqrt(max(rest, 0.0))
 
 
-@kernel
+@part
 def begin(foot: Foot, now_s: float) -> None:
     """The rate has just passed the threshold."""
     foot.moving, foot.sure, foot.below_s = 1.0, 0.0, 0.0
@@ -85,7 +85,7 @@ def begin(foot: Foot, now_s: float) -> None:
     foot.yaw_energy, foot.tilt_energy, foot.now, foot.margin = 0.0, 0.0, UNKNOWN, 0.0
 
 
-@kernel
+@part
 def add_up(foot: Foot, rates: tuple[float, float, float], dt_s: float) -> None:
     """The action goes on."""
     yaw, pitch, roll = rates
@@ -100,7 +100,7 @@ def add_up(foot: Foot, rates: tuple[float, float, float], dt_s: float) -> None:
     foot.tilt_energy += (pitch * pitch + 0.5 * roll * roll) * dt_s
 
 
-@kernel
+@part
 def kind_now(foot: Foot) -> tuple[float, float]:
     """What the action under way is, and how clearly (0 to 1)."""
     total = foot.yaw_energy + foot.tilt_energy + 1e-9
@@ -156,7 +156,7 @@ def step_foot(
     return fresh
 
 
-@kernel
+@part
 def become_sure(foot: Foot) -> None:
     """It is an action: it counts from its onset on. After a rest it is the first of a new bout."""
     foot.sure = 1.0
@@ -166,7 +166,7 @@ def become_sure(foot: Foot) -> None:
     foot.actions += 1.0
 
 
-@kernel
+@part
 def settle_kind(foot: Foot) -> None:
     """The kind of this action, once it is clear; until then the last one's, if there was one."""
     if foot.sure == 0.0:
@@ -177,7 +177,7 @@ def settle_kind(foot: Foot) -> None:
         foot.kind = foot.now
 
 
-@kernel
+@part
 def ended(foot: Foot, now_s: float) -> bool:
     """Quiet, and back where it began; or quiet for long; or too long.
 
@@ -190,7 +190,7 @@ def ended(foot: Foot, now_s: float) -> bool:
     return quiet or foot.below_s >= _STUCK_S or now_s - foot.begin_s > _LONGEST_S
 
 
-@kernel
+@part
 def end(foot: Foot, now_s: float) -> None:
     """The foot rests again."""
     foot.moving = 0.0

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compiled import kernel
+from app.compiled import kernel, part
 from app.gestures import state as s
 from app.gestures.foot import REST_CYCLES, reset_foot, step_foot
 from app.gestures.state import BACK, STEP, TOE_UP, TWIST, UNKNOWN, Foot, Pair, Record, Tuning
@@ -44,7 +44,7 @@ def step(
     return decide(feet, pair, tuning, now_s)
 
 
-@kernel
+@part
 def large_enough(
     foot: Foot, other: Foot, off_radps: float, sure_rad: float, now_s: float
 ) -> tuple[float, float]:
@@ -65,7 +65,7 @@ def large_enough(
     return quiet, enough
 
 
-@kernel
+@part
 def note_onset(foot: Foot, other: Foot, pair: Pair) -> None:
     """The pace from this foot's last two onsets: a running mean of up to eight."""
     pair.stopped = 0.0
@@ -84,7 +84,7 @@ def note_onset(foot: Foot, other: Foot, pair: Pair) -> None:
     pair.cycle_s += (interval - pair.cycle_s) / pair.intervals
 
 
-@kernel
+@part
 def cycle_of(left: Foot, right: Foot, pair: Pair) -> float:
     """The best guess of the cycle: measured, or twice from foot to foot, or from one action's length."""
     if pair.intervals > 0.0:
@@ -99,13 +99,13 @@ def cycle_of(left: Foot, right: Foot, pair: Pair) -> float:
     return _USUAL_CYCLE_S
 
 
-@kernel
+@part
 def acts(foot: Foot) -> bool:
     """Whether the foot is in an action that counts."""
     return foot.moving != 0.0 and foot.sure != 0.0
 
 
-@kernel
+@part
 def takes_part(foot: Foot, other: Foot, cycle_s: float, now_s: float) -> float:
     """The kind with which the foot takes part in the gesture; ``UNKNOWN`` if it does not."""
     kind = foot.kind
@@ -139,7 +139,7 @@ def decide(feet: Record, pair: Pair, tuning: Tuning, now_s: float) -> bool:
     return stand(pair, 10 * s.STILL + 2)
 
 
-@kernel
+@part
 def fault(left: Foot, right: Foot, silence_s: float, now_s: float) -> int:
     """A reason to stand that is no gesture: a sensor is missing, silent or sends rubbish; or 0."""
     for i, foot in ((0, left), (1, right)):
@@ -152,7 +152,7 @@ def fault(left: Foot, right: Foot, silence_s: float, now_s: float) -> int:
     return 0
 
 
-@kernel
+@part
 def stand(pair: Pair, reason: int) -> bool:
     """Nothing is asked for."""
     changed = pair.motion != 0.0 or pair.reason != reason
@@ -162,7 +162,7 @@ def stand(pair: Pair, reason: int) -> bool:
     return changed
 
 
-@kernel
+@part
 def say(
     pair: Pair, motion: int, certain: bool, confidence: float, way: tuple[float, float, float], reason: int
 ) -> bool:
@@ -181,7 +181,7 @@ def say(
     return changed
 
 
-@kernel
+@part
 def both(
     left: Foot, right: Foot, a: float, b: float, cycle_s: float, pair: Pair, tuning: Tuning, now_s: float
 ) -> bool:
@@ -203,7 +203,7 @@ def both(
     return stand(pair, 10 * (s.TWISTS if a == TWIST and b == TWIST else s.MIXED) + 2)
 
 
-@kernel
+@part
 def alone(
     foot: Foot, other: Foot, kind: float, which: int, cycle_s: float, pair: Pair, tuning: Tuning, now_s: float
 ) -> bool:
