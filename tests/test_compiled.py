@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import subprocess
 import sys
 import textwrap
 import time
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
 from app import compiled
+
+APP = Path(compiled.__file__).parent
 
 RUN_A_KERNEL = """
 import os
@@ -111,3 +115,39 @@ def test_a_home_that_cannot_be_written_still_runs_and_leaves_nothing(tmp_path: P
 def test_numba_reads_the_folder_chosen_here() -> None:
     numba = sys.modules["numba"]
     assert os.environ["NUMBA_CACHE_DIR"] == numba.config.CACHE_DIR
+
+
+def test_python_calls_no_part() -> None:
+    """A part that Python calls runs as Python: right, and a hundred times slower."""
+    trees = {path: ast.parse(path.read_text("utf-8")) for path in APP.rglob("*.py")}
+    parts = {(module_of(path), name) for path, tree in trees.items() for name in marked(tree, {"part"})}
+    assert parts
+    called = []
+    for path, tree in trees.items():
+        here = {name for module, name in parts & known_to(path, tree)}
+        called += [f"{path.name}:{n.lineno}: {n.id}" for n in names_in_python(tree) if n.id in here]
+    assert called == []
+
+
+def module_of(path: Path) -> str:
+    return ".".join(path.relative_to(APP.parent).with_suffix("").parts)
+
+
+def marked(tree: ast.Module, marks: set[str]) -> set[str]:
+    functions = [node for node in tree.body if isinstance(node, ast.FunctionDef)]
+    return {f.name for f in functions for d in f.decorator_list if isinstance(d, ast.Name) and d.id in marks}
+
+
+def known_to(path: Path, tree: ast.Module) -> set[tuple[str, str]]:
+    """Names with the module they are from: its own and the imported."""
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
+    imported = {(str(node.module), alias.name) for node in imports for alias in node.names}
+    return imported | {(module_of(path), name) for name in marked(tree, {"part"})}
+
+
+def names_in_python(tree: ast.Module) -> Iterator[ast.Name]:
+    """Names used outside kernels and parts."""
+    compiled_here = marked(tree, {"part", "kernel"})
+    for node in tree.body:
+        if not (isinstance(node, ast.FunctionDef) and node.name in compiled_here):
+            yield from (name for name in ast.walk(node) if isinstance(name, ast.Name))

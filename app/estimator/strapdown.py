@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from app.compiled import part
+from app.compiled import kernel, part
 from app.motion.basics import Quaternion, Vector
 from app.rotation import rotate
 
@@ -25,7 +25,7 @@ def trapezoid(total: Vector, before: Vector, now: Vector, dt_s: float) -> Vector
     )
 
 
-@part
+@kernel
 def bias_of_swing(end_velocity_n: Vector, swing_s: float) -> Vector:
     """(10): ε = v(T) / T: the acceleration error that explains why the foot did not come to rest."""
     return (end_velocity_n[0] / swing_s, end_velocity_n[1] / swing_s, end_velocity_n[2] / swing_s)
