@@ -65,6 +65,13 @@ class House:
         connection.close()
         return answer.status, {name.lower(): value for name, value in answer.getheaders()}, body
 
+    def answers(self) -> bool:
+        """Whether it has room for one more that asks."""
+        try:
+            return self.get("/healthz")[0] == 200
+        except OSError:
+            return False
+
     def cookie(self, token: str) -> str:
         """The cookie header of a browser that opened the address with this token."""
         return self.get(f"/?token={quote(token)}")[1]["set-cookie"].split(";")[0]

@@ -182,7 +182,7 @@ def test_a_thousand_connections(walk: Walk) -> None:
     walk.goes_on()
     for connection in idle:
         connection.close()
-    eventually(lambda: walk.house.get("/healthz")[0] == 200)
+    eventually(walk.house.answers)
     knocking = [walk.house.knock(Cookie=walk.cookies[VIEWER]) for _ in range(500)]
     eventually(lambda: counters.connections == upstream.MAX_BROWSERS)
     walk.goes_on()
