@@ -17,7 +17,7 @@ from app.scene.baked import linear
 from app.scene.colours import FOOT, Rgb, blend, shade
 from app.scene.glb import Part, glb
 from app.scene.guard import FAR_M
-from app.scene.meshes import Meshes
+from app.scene.meshes import BOTH_S, Clock, Meshes
 from app.scene.shoe import SENSOR_HEIGHT_M, sole
 
 PRINTS = 40  # drawn at most
@@ -65,11 +65,11 @@ def printed(prints: tuple[Footprint, ...], role: Role) -> bytes:
 class Footprints:
     """The prints of one foot, in a frame moved aside by ``offset``."""
 
-    def __init__(self, scene: viser.SceneApi, name: str, role: Role, offset: Vector) -> None:
+    def __init__(self, scene: viser.SceneApi, name: str, role: Role, offset: Vector, now: Clock) -> None:
         self._name, self._role = f"/ned/prints/{name}", role
         self._root = scene.add_frame(self._name, show_axes=False, position=offset)
         self._groups: dict[int, tuple[Footprint, ...]] = {}
-        self._meshes = Meshes(scene, f"{self._name}/soles")
+        self._meshes = Meshes(scene, f"{self._name}/soles", BOTH_S, now)
         self._labels = [self._label(scene, f"{self._name}/number_{i}") for i in range(NUMBERED)]
         self._drawn: tuple[Footprint, ...] = ()
 

@@ -54,7 +54,7 @@ class Scene:
             "/ned", wxyz=NED_WXYZ, position=in_view(self._glide.centre), show_axes=False
         )
         self._ground = Ground(self._server.scene, dark=True)
-        self._stage = Stage(self._server.scene)
+        self._stage = Stage(self._server.scene, time.monotonic)
         self._reference = Once[Reference](partial(reference_line, self._server.scene))
         self._outline = Once[Outline](partial(outline_nodes, self._server.scene))
         self._theme(dark=True)
@@ -67,7 +67,8 @@ class Scene:
         now = time.monotonic()
         self._follow(self._stage.draw(snapshot), min(now - self._drawn_at, LONGEST_STEP_S))
         self._drawn_at = now
-        self._server.flush()  # the shoe need not wait for words and graphs
+        self._server.flush()  # the shoe need not wait for trails, words and graphs
+        self._stage.draw_ways(snapshot)
         if now >= self._next_graph:
             self._next_graph = now + GRAPH_S
             self.panel.show_graphs(snapshot)

@@ -43,7 +43,8 @@ class Film:
         scene = server.scene
         self._root = scene.add_frame("/ned", wxyz=NED_WXYZ, show_axes=False)
         self._ground = Ground(scene, dark=dark)
-        self._stage, self._glide = Stage(scene), Glide()
+        self._shown_s = 0.0  # of the film
+        self._stage, self._glide = Stage(scene, lambda: self._shown_s), Glide()
         self._labels: dict[str, viser.LabelHandle] = {}
         self._frames, self._written = 0, True
         place_camera(server, BACK)
@@ -56,7 +57,9 @@ class Film:
 
     def show(self, snapshot: Snapshot, elapsed_s: float = SETTLED_S) -> None:
         """Show this ``elapsed_s`` after what was shown before; alone it is a picture to turn about."""
+        self._shown_s += elapsed_s
         places = self._stage.draw(snapshot)
+        self._stage.draw_ways(snapshot)
         centre = self._glide.towards(middle(places), CLOSER * elapsed_s)
         self._written = self._frames % WORDS_EVERY == 0
         self._frames += 1

@@ -6,6 +6,7 @@ import viser
 
 from app.motion.basics import Vector
 from app.motion.snapshot import PendulumView, Snapshot
+from app.scene.meshes import Clock
 from app.scene.pendulum import Pendulum, no_feet
 from app.scene.walkers import Walkers
 
@@ -13,8 +14,8 @@ from app.scene.walkers import Walkers
 class Stage:
     """Shows what the snapshot is of, and takes away what it is not."""
 
-    def __init__(self, scene: viser.SceneApi) -> None:
-        self.walkers = Walkers(scene)
+    def __init__(self, scene: viser.SceneApi, now: Clock) -> None:
+        self.walkers = Walkers(scene, now)
         self._scene = scene
         self._pendulum: Pendulum | None = None
 
@@ -25,6 +26,10 @@ class Stage:
             return self.walkers.draw(snapshot)
         self.walkers.draw(no_feet(snapshot))
         return [self._pendulum.draw(snapshot)]
+
+    def draw_ways(self, snapshot: Snapshot) -> None:
+        """Where the feet went; after ``draw``."""
+        self.walkers.draw_ways(snapshot if self._pendulum is None else no_feet(snapshot))
 
     def _hang(self, view: PendulumView | None) -> None:
         if self._pendulum is not None and (view is None or view.rod_m != self._pendulum.rod_m):

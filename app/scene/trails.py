@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,7 +12,7 @@ from app.motion.basics import Vector
 from app.motion.snapshot import Trail
 from app.scene.colours import Rgb
 from app.scene.guard import finite_segments
-from app.scene.meshes import BOTH_S, Meshes
+from app.scene.meshes import BOTH_S, Clock, Meshes
 from app.scene.ribbon import ribbon
 
 Segments = NDArray[np.float32]
@@ -32,6 +31,7 @@ class Look:
     colour: Rgb
     provisional: Rgb
     thickness: float  # screen pixels
+    both_s: float = BOTH_S  # what is replaced stays so long
     above_m: float = 0.0  # the main trail: where both are, the narrower one lies on the broader one
 
 
@@ -59,16 +59,16 @@ class TrailNodes:
     What is settled is drawn as ribbons; only its end and the newest stride are lines, which cost more.
     """
 
-    def __init__(self, scene: viser.SceneApi, name: str, look: Look, offset: Vector) -> None:
-        self._scene, self._look = scene, look
+    def __init__(self, scene: viser.SceneApi, name: str, look: Look, offset: Vector, now: Clock) -> None:
+        self._scene, self._look, self._now = scene, look, now
         self._prefix = f"/ned/trail/{name}"
         place = (offset[0], offset[1], offset[2] - look.above_m)
         self._root = scene.add_frame(self._prefix, show_axes=False, position=place)
-        self._meshes = Meshes(scene, f"{self._prefix}/piece")
+        self._meshes = Meshes(scene, f"{self._prefix}/piece", look.both_s, now)
         self._keys: set[str] = set()
         self._parts: list[tuple[Segments, float]] = []  # of the growing piece that are ribbons, since when
         self._growing: Segments = NOTHING[:0]
-        self._line = _Line(self._add_line("growing", look.colour))
+        self._line = _Line(self._add_line("growing", look.colour), look.both_s, now)
         self._provisional = self._add_line("provisional", look.provisional)
         self._drawn: Trail | None = None
 
@@ -109,11 +109,11 @@ class TrailNodes:
         del self._parts[keep:]
         for i in range(keep, len(wanted)):
             self._put(i, wanted[i])
-            self._parts.append((wanted[i], time.monotonic()))
+            self._parts.append((wanted[i], self._now()))
 
     def _parts_there(self) -> int:
         """How many of them every browser has drawn by now."""
-        before = time.monotonic() - BOTH_S
+        before = self._now() - self._look.both_s
         return sum(since < before for _, since in self._parts)
 
     def _put(self, key: str | int, segments: Segments) -> None:
@@ -134,8 +134,8 @@ class TrailNodes:
 class _Line:
     """The end of what is settled; also what has just become a ribbon, until that is there."""
 
-    def __init__(self, node: viser.LineSegmentsHandle) -> None:
-        self._node = node
+    def __init__(self, node: viser.LineSegmentsHandle, both_s: float, now: Clock) -> None:
+        self._node, self._both_s, self._now = node, both_s, now
         self._shown: tuple[Segments, int, Segments] = (NOTHING[:0], 0, NOTHING[:0])
         self._rest: Segments = NOTHING[:0]
         self._until_s = 0.0
@@ -144,11 +144,11 @@ class _Line:
         """What is shown now stays for a moment."""
         growing, start, rest = self._shown
         self._rest = np.concatenate([rest, growing[start:]])[-2 * PART :]
-        self._until_s = time.monotonic() + BOTH_S
+        self._until_s = self._now() + self._both_s
 
     def show(self, growing: Segments, start: int) -> None:
         """Draw these from ``start`` on."""
-        if len(self._rest) and time.monotonic() > self._until_s:
+        if len(self._rest) and self._now() > self._until_s:
             self._rest = NOTHING[:0]
         was = self._shown
         if growing is not was[0] or start != was[1] or self._rest is not was[2]:

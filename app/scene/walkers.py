@@ -15,6 +15,7 @@ from app.scene.colours import CANDIDATE, FOOT, OWN, TRUTH, Rgb, blend
 from app.scene.doubt import Doubt
 from app.scene.footprints import Footprints
 from app.scene.guard import drawable, unit
+from app.scene.meshes import Clock
 from app.scene.shoe import SENSOR_HEIGHT_M, Shadow, Shoe, yaw
 from app.scene.trails import NOTHING, Look, TrailNodes
 
@@ -24,7 +25,8 @@ EMPTY = Trail((), NOTHING[:0], NOTHING[:0])
 
 TRUTH_LOOK = Look(TRUTH, blend(TRUTH, GREY, 0.3), 1.5, above_m=0.004)
 OWN_LOOK = Look(OWN, blend(OWN, GREY, 0.3), 1.5, above_m=0.006)
-GHOST_LOOK = Look(CANDIDATE, blend(CANDIDATE, GREY, 0.35), 2.0, above_m=0.002)
+#: While a slider is dragged, the ghost before is soon gone.
+GHOST_LOOK = Look(CANDIDATE, blend(CANDIDATE, GREY, 0.35), 2.0, above_m=0.002, both_s=0.08)
 
 
 def node_name(role: Role, sensor: str, roles: Iterable[Role]) -> str:
@@ -60,8 +62,11 @@ def moved(p: Vector, offset: Vector) -> Vector:
 class Second:
     """Another shoe and its trail beside the main one; made when first shown."""
 
-    def __init__(self, scene: viser.SceneApi, kind: str, name: str, role: Role, look: Look) -> None:
-        self._scene, self._kind, self._name, self._role, self._look = scene, kind, name, role, look
+    def __init__(
+        self, scene: viser.SceneApi, kind: str, name: str, role: Role, look: Look, now: Clock
+    ) -> None:
+        self._scene, self._kind, self._name = scene, kind, name
+        self._role, self._look, self._now = role, look, now
         self._shown: tuple[Shoe, TrailNodes] | None = None
 
     def draw(self, foot: FootView | OwnView | None, offset: Vector, toe: Toe | None) -> None:
@@ -70,7 +75,7 @@ class Second:
             return self.remove()
         if self._shown is None:
             shoe = Shoe(self._scene, f"/ned/{self._kind}/{self._name}", self._role, ghost=self._look.colour)
-            trail = TrailNodes(self._scene, f"{self._name}_{self._kind}", self._look, offset)
+            trail = TrailNodes(self._scene, f"{self._name}_{self._kind}", self._look, offset, self._now)
             self._shown = shoe, trail
         shoe, trail = self._shown
         trail.draw(foot.trail)
@@ -88,23 +93,22 @@ class Second:
 class Walker:
     """One foot on the page."""
 
-    def __init__(self, scene: viser.SceneApi, name: str, role: Role, offset: Vector) -> None:
-        self._scene, self._name, self._role, self._offset = scene, name, role, offset
+    def __init__(self, scene: viser.SceneApi, name: str, role: Role, offset: Vector, now: Clock) -> None:
+        self._scene, self._name, self._role = scene, name, role
+        self._offset, self._now = offset, now
         self.shoe = Shoe(scene, f"/ned/{name}", role)
         self._shadow = Shadow(scene, f"/ned/shadow/{name}", role)
         self._doubt = Doubt(scene, f"/ned/doubt/{name}", role)
-        self._trail = TrailNodes(scene, name, look(role), offset)
-        self._prints = Footprints(scene, name, role, offset)
-        self._ghost = Second(scene, "ghost", name, role, GHOST_LOOK)
-        self._own = Second(scene, "own", name, role, OWN_LOOK)
+        self._trail = TrailNodes(scene, name, look(role), offset, now)
+        self._prints = Footprints(scene, name, role, offset, now)
+        self._ghost = Second(scene, "ghost", name, role, GHOST_LOOK, now)
+        self._own = Second(scene, "own", name, role, OWN_LOOK, now)
         self._truth_trail: TrailNodes | None = None
         self._toe: Toe | None = None
 
     def draw(self, foot: FootView) -> Vector | None:
         """Show it; returns where it is drawn, or nothing while its pose is no finite number."""
         self._toe = foot.toe
-        self._trail.draw(foot.trail)
-        self._prints.draw(foot.footprints)
         if not drawable(foot):
             return None
         place, turn = moved(foot.position_n, self._offset), unit(foot.q_nb)
@@ -113,6 +117,11 @@ class Walker:
         self._shadow.lie(place, yaw(multiply(turn, foot.toe.q_bs) if foot.toe else turn), floor(foot))
         self._doubt.lie(place, floor(foot), foot.trust)
         return place
+
+    def draw_way(self, foot: FootView) -> None:
+        """Where it went: its trail and its prints."""
+        self._trail.draw(foot.trail)
+        self._prints.draw(foot.footprints)
 
     def draw_beside(self, ghost: FootView | None, own: OwnView | None) -> None:
         """The candidate over the whole walk, and the walk by the sensor's own orientation, or nothing."""
@@ -124,7 +133,9 @@ class Walker:
         if self._truth_trail is None:
             if trail is None:
                 return
-            self._truth_trail = TrailNodes(self._scene, f"{self._name}_truth", TRUTH_LOOK, self._offset)
+            self._truth_trail = TrailNodes(
+                self._scene, f"{self._name}_truth", TRUTH_LOOK, self._offset, self._now
+            )
         self._truth_trail.draw(EMPTY if trail is None else trail)
 
     def remove(self) -> None:
@@ -138,8 +149,8 @@ class Walker:
 class Walkers:
     """All feet of a snapshot; made anew when the walk starts again or the feet change."""
 
-    def __init__(self, scene: viser.SceneApi) -> None:
-        self._scene = scene
+    def __init__(self, scene: viser.SceneApi, now: Clock) -> None:
+        self._scene, self._now = scene, now
         self._walkers: dict[str, Walker] = {}
         self._made_for: object = None
         self._note: viser.LabelHandle | None = None
@@ -156,11 +167,16 @@ class Walkers:
             self._made_for = made_for
         self._show_note(len(feet) > 1 and not snapshot.main.linked)
         places = [self._walkers[f.sensor].draw(f) for f in feet]
+        return [place for place in places if place is not None]
+
+    def draw_ways(self, snapshot: Snapshot) -> None:
+        """All ways walked, of the feet that were drawn, and what is beside them: it takes longer."""
+        for foot in snapshot.main.feet:
+            self._walkers[foot.sensor].draw_way(foot)
         ghosts = {f.sensor: f for f in snapshot.candidate.feet} if snapshot.candidate else {}
         for sensor, walker in self._walkers.items():
             walker.draw_truth(snapshot.truth.get(sensor))
             walker.draw_beside(ghosts.get(sensor), snapshot.own.get(sensor) if self._show_own else None)
-        return [place for place in places if place is not None]
 
     def show_own(self, on: bool) -> None:
         """The walk by each sensor's own orientation, where it tells one."""
@@ -179,10 +195,14 @@ class Walkers:
         two = len(feet) > 1
         self._walkers = {
             f.sensor: Walker(
-                self._scene, node_name(f.role, f.sensor, roles), f.role, origin(f.role, two, heading_rad)
+                self._scene,
+                node_name(f.role, f.sensor, roles),
+                f.role,
+                origin(f.role, two, heading_rad),
+                self._now,
             )
             for f in feet
-        }  # fmt: skip
+        }
         self.show_axes(self._axes)
 
     def _show_note(self, on: bool) -> None:

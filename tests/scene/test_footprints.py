@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import math
+import time
 
 import numpy as np
 import pytest
@@ -34,7 +35,7 @@ def test_a_stride_sends_only_its_own_group(scene: Scene, monkeypatch: pytest.Mon
 
     made = footprints.printed
     monkeypatch.setattr(footprints, "printed", noted)
-    drawn = Footprints(scene._server.scene, "foot", Role.FOOT, (0.0, 0.0, 0.0))
+    drawn = Footprints(scene._server.scene, "foot", Role.FOOT, (0.0, 0.0, 0.0), time.monotonic)
     for count in range(1, 3 * PRINTS):
         sent.clear()
         drawn.draw(steps(count)[-PRINTS:])
@@ -46,8 +47,8 @@ def test_a_stride_sends_only_its_own_group(scene: Scene, monkeypatch: pytest.Mon
 def test_what_was_corrected_is_drawn_anew_and_the_old_goes(
     scene: Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(meshes, "BOTH_S", 0.0)
-    drawn = Footprints(scene._server.scene, "foot", Role.FOOT, (0.0, 0.0, 0.0))
+    monkeypatch.setattr(footprints, "BOTH_S", 0.0)
+    drawn = Footprints(scene._server.scene, "foot", Role.FOOT, (0.0, 0.0, 0.0), time.monotonic)
     drawn.draw(steps(12))
     moved = tuple(foot._replace(heading_rad=1.0) for foot in steps(12))
     drawn.draw(moved)

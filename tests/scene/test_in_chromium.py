@@ -121,6 +121,17 @@ def wait_for_node(page: Page, name: str) -> None:
 PLACE = "() => window.__viserMutable.nodeRefFromName['/ned/foot'].position.toArray()"
 
 
+#: Whether what the page's script does to a ribbon's material has taken hold.
+WIDENED = """() => Object.entries(window.__viserMutable.nodeRefFromName).some(([name, node]) => {
+    let widened = false;
+    if (node && name.startsWith('/ned/trail/')) node.traverse(object => {
+        widened ||= Boolean(object.geometry?.attributes._side)
+            && String(object.material.onBeforeCompile).includes('ssPixel');
+    });
+    return widened;
+})"""
+
+
 def is_at(page: Page, t_s: float) -> bool:
     return np.allclose(page.evaluate(PLACE), fakes.pose(t_s)[0], atol=1e-6)
 
@@ -135,6 +146,7 @@ def test_the_shoe_is_drawn_and_the_trail_grows(house: House, page: Page, build_d
     house.shown.snapshot = fakes.snapshot(5.0)
     until(lambda: is_at(page, 5.0), 90)
     until(lambda: page.evaluate(points) > before, 90)
+    page.wait_for_function(WIDENED)
     until(lambda: blue(page) > 100, 90)
     page.screenshot(path=build_dir / "scene_one_foot.png", timeout=PATIENCE_MS)
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from app.motion.snapshot import Trail, TrailPiece
-from app.scene import meshes, private, trails
+from app.scene import private, trails
 from app.scene.meshes import BOTH_S
 from app.scene.page import Scene
 from tests.scene import fakes
@@ -49,11 +49,8 @@ class Clock:
 
 
 @pytest.fixture
-def clock(monkeypatch: pytest.MonkeyPatch) -> Clock:
-    made = Clock()
-    for module in (trails, meshes):
-        monkeypatch.setattr(module, "time", made)
-    return made
+def clock() -> Clock:
+    return Clock()
 
 
 def pieces_sent(scene: Scene) -> set[bytes]:
@@ -64,7 +61,7 @@ def pieces_sent(scene: Scene) -> set[bytes]:
 
 def test_a_piece_is_sent_once_and_goes_with_its_key(scene: Scene, clock: Clock) -> None:
     nodes = trails.TrailNodes(
-        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0), clock.monotonic
     )
     one, two = TrailPiece("one", straight(1.0)), TrailPiece("two", straight(2.0))
     nodes.draw(Trail((one,), EMPTY, EMPTY))
@@ -84,7 +81,7 @@ def test_all_that_is_settled_is_drawn_at_any_time_and_its_end_alone_is_a_line(
 ) -> None:
     way = straight(30.0, 200)
     nodes = trails.TrailNodes(
-        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0), clock.monotonic
     )
     for settled in range(1, 200):
         done = settled // 64 * 64
@@ -105,7 +102,7 @@ def test_all_that_is_settled_is_drawn_at_any_time_and_its_end_alone_is_a_line(
 
 def test_a_growing_piece_that_was_turned_is_drawn_anew(scene: Scene, clock: Clock) -> None:
     nodes = trails.TrailNodes(
-        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0), clock.monotonic
     )
     nodes.draw(Trail((), straight(5.0), EMPTY))
     before = pieces_sent(scene)
@@ -117,9 +114,9 @@ def test_a_growing_piece_that_was_turned_is_drawn_anew(scene: Scene, clock: Cloc
     assert not before & pieces_sent(scene)
 
 
-def test_what_did_not_change_is_not_sent(scene: Scene) -> None:
+def test_what_did_not_change_is_not_sent(scene: Scene, clock: Clock) -> None:
     nodes = trails.TrailNodes(
-        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0)
+        scene._server.scene, "t", trails.Look((1, 2, 3), (4, 5, 6), 2.0), (0.0, 0.0, 0.0), clock.monotonic
     )
     trail = fakes.trail(20.3)
     nodes.draw(trail)
