@@ -22,6 +22,8 @@ NOTHING: Segments = np.zeros((1, 2, 3), dtype=np.float32)
 DASH_M = 0.035
 #: Segments of a growing piece in one ribbon: three strides or so.
 PART = 16
+#: Pieces that come at once, as a ghost's do, are one mesh, or few: a mesh costs more than what is in it.
+TOGETHER = 64
 
 
 @dataclass(frozen=True)
@@ -66,6 +68,7 @@ class TrailNodes:
         self._root = scene.add_frame(self._prefix, show_axes=False, position=place)
         self._meshes = Meshes(scene, f"{self._prefix}/piece", look.both_s, now)
         self._keys: set[str] = set()
+        self._groups: set[tuple[str, ...]] = set()  # of pieces, each one mesh
         self._parts: list[tuple[Segments, float]] = []  # of the growing piece that are ribbons, since when
         self._growing: Segments = NOTHING[:0]
         self._line = _Line(self._add_line("growing", look.colour), look.both_s, now)
@@ -88,10 +91,15 @@ class TrailNodes:
     def _draw_pieces(self, trail: Trail) -> None:
         wanted = {piece.key: piece for piece in trail.pieces}
         gone, new = changes(self._keys, set(wanted))
-        for key in gone:
-            self._meshes.drop(key)
-        for key in sorted(new):
-            self._put(key, finite_segments(wanted[key].segments))
+        torn = {group for group in self._groups if not gone.isdisjoint(group)}
+        for group in torn:
+            self._meshes.drop(group)
+        anew = new.union(*torn)
+        keys = [piece.key for piece in trail.pieces if piece.key in anew]
+        groups = [tuple(keys[i : i + TOGETHER]) for i in range(0, len(keys), TOGETHER)]
+        for group in groups:
+            self._put(group, np.concatenate([finite_segments(wanted[key].segments) for key in group]))
+        self._groups = (self._groups - torn).union(groups)
         was, self._keys = self._keys, set(wanted)
         kept = was & self._keys
         if new and (kept or not was):
@@ -116,7 +124,7 @@ class TrailNodes:
         before = self._now() - self._look.both_s
         return sum(since < before for _, since in self._parts)
 
-    def _put(self, key: str | int, segments: Segments) -> None:
+    def _put(self, key: tuple[str, ...] | int, segments: Segments) -> None:
         if len(segments):
             self._meshes.put(key, ribbon(segments, self._look.colour, self._look.thickness))
 

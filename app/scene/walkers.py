@@ -26,7 +26,7 @@ EMPTY = Trail((), NOTHING[:0], NOTHING[:0])
 TRUTH_LOOK = Look(TRUTH, blend(TRUTH, GREY, 0.3), 1.5, above_m=0.004)
 OWN_LOOK = Look(OWN, blend(OWN, GREY, 0.3), 1.5, above_m=0.006)
 #: While a slider is dragged, the ghost before is soon gone.
-GHOST_LOOK = Look(CANDIDATE, blend(CANDIDATE, GREY, 0.35), 2.0, above_m=0.002, both_s=0.08)
+GHOST_LOOK = Look(CANDIDATE, blend(CANDIDATE, GREY, 0.35), 2.0, above_m=0.002, both_s=0.05)
 
 
 def node_name(role: Role, sensor: str, roles: Iterable[Role]) -> str:

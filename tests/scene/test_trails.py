@@ -7,6 +7,7 @@ from app.motion.snapshot import Trail, TrailPiece
 from app.scene import private, trails
 from app.scene.meshes import BOTH_S
 from app.scene.page import Scene
+from app.scene.ribbon import ribbon
 from tests.scene import fakes
 
 EMPTY = trails.NOTHING[:0]
@@ -74,6 +75,23 @@ def test_a_piece_is_sent_once_and_goes_with_its_key(scene: Scene, clock: Clock) 
     nodes.draw(Trail((two,), EMPTY, EMPTY))
     assert len(pieces_sent(scene)) == 1
     assert first not in pieces_sent(scene)
+
+
+def test_of_pieces_that_came_together_some_go_and_the_others_stay(scene: Scene, clock: Clock) -> None:
+    look = trails.Look((1, 2, 3), (4, 5, 6), 2.0)
+    nodes = trails.TrailNodes(scene._server.scene, "t", look, (0.0, 0.0, 0.0), clock.monotonic)
+    a, b, c, both = (TrailPiece(name, straight(k + 1.0)) for k, name in enumerate(("a", "b", "c", "a and b")))
+    nodes.draw(Trail((a, b, c), EMPTY, EMPTY))
+    assert pieces_sent(scene) == {drawn_as(look, a, b, c)}
+    after = Trail((both, c), EMPTY, EMPTY)
+    nodes.draw(after)
+    clock.tick(BOTH_S + 0.01)
+    nodes.draw(after)
+    assert pieces_sent(scene) == {drawn_as(look, both, c)}
+
+
+def drawn_as(look: trails.Look, *pieces: TrailPiece) -> bytes:
+    return ribbon(np.concatenate([piece.segments for piece in pieces]), look.colour, look.thickness)
 
 
 def test_all_that_is_settled_is_drawn_at_any_time_and_its_end_alone_is_a_line(
