@@ -12,15 +12,16 @@ import numpy as np
 
 from app.blocks import Blocks
 from app.estimator import sweep
+from app.estimator.smoother import smooth
 from app.estimator.tracker import Tracker, store
 from app.motion.recording import Recording
 from app.motion.samples import Sample, Samples
 from app.session import Session
-from app.settings import Settings
+from app.settings import BUILT_IN, Settings
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec
 from app.sources.timeline import Timeline
-from app.warm import warm_up
+from app.warm import warm_hindsight, warm_up
 from benchmarks.figures import Figure, Section
 
 SIX_MINUTES = "sim:walk?path=oval&rate_hz=100&duration_s=360&noise=1"
@@ -31,7 +32,9 @@ Timed = Callable[[], float]  # seconds of processor time for one round
 
 def cost() -> Section:
     """Processor time of one thread, least of several interleaved rounds: what else runs costs nothing."""
-    warm_up()
+    warm_up("papers")
+    warm_up("kalman")
+    warm_hindsight()
     recording, _ = open_recording(parse_spec(SIX_MINUTES))
     (samples,) = recording.sensors
     yield from per_sample(recording, samples)
@@ -42,7 +45,9 @@ def cost() -> Section:
 def per_sample(recording: Recording, samples: Samples) -> Section:
     """Microseconds for one sample, the libraries' own update calls beside ours."""
     loops = {
-        "advance": lambda: live_calls(samples),
+        "advance": lambda: live_calls(samples, Settings()),
+        "kalman": lambda: live_calls(samples, BUILT_IN["default"]),
+        "smoother": lambda: smoother_s(samples),
         "take": lambda: session_takes(recording),
         "imufusion": lambda: imufusion_calls(samples),
         "madgwick": lambda: ahrs_calls(ahrs.filters.Madgwick, samples, 2000),
@@ -51,7 +56,11 @@ def per_sample(recording: Recording, samples: Samples) -> Section:
     us = {name: 1e6 * seconds for name, seconds in interleaved(loops).items()}
     ours = us["advance"]
     yield Figure("one sample through Tracker.advance", ours, "µs", 3.0, note="attitude, gait, ZUPT, position")
-    yield Figure("one sample through Session.take", us["take"], "µs", note="the same, kept, with its trail")
+    yield Figure("the same by the Kalman filter, profile default", us["kalman"], "µs", 6.0)
+    yield Figure("its smoother, for each sample of the walk", us["smoother"], "µs", 15.0)
+    yield Figure(
+        "one sample through Session.take", us["take"], "µs", note="the first's, kept, with its trail"
+    )
     for name, what in (
         ("imufusion", "imufusion Ahrs.update_no_magnetometer"),
         ("madgwick", "ahrs Madgwick.updateIMU"),
@@ -66,15 +75,24 @@ def interleaved(loops: dict[str, Timed]) -> dict[str, float]:
     return {name: min(one[name] for one in rounds) for name in loops}
 
 
-def live_calls(samples: Samples) -> float:
+def live_calls(samples: Samples, settings: Settings) -> float:
     """Seconds a sample: the table grows by one row, the tracker takes it."""
-    table, tracker = store(samples), Tracker(Settings())
+    table, tracker = store(samples), Tracker(settings)
     count, table.end = table.end, 0
     began = time.thread_time()
     for end in range(1, count + 1):
         table.end = end
         tracker.advance(table)
     return (time.thread_time() - began) / count
+
+
+def smoother_s(samples: Samples) -> float:
+    """Seconds a sample that the smoother takes after the walk."""
+    table, tracker = store(samples), Tracker(BUILT_IN["hindsight"])
+    tracker.advance(table)
+    began = time.thread_time()
+    smooth(tracker, table)
+    return (time.thread_time() - began) / len(table)
 
 
 def session_takes(recording: Recording) -> float:
