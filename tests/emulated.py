@@ -77,6 +77,8 @@ async def _serve(
             serving = asyncio.create_task(emulator.run())
             while not serving.done() and len(samples) < enough:
                 await asyncio.sleep(0.02)
+            if serving.done():
+                serving.result()
             serving.cancel()
         for task in tasks:
             assert not task.done(), task.result()

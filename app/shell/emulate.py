@@ -31,6 +31,8 @@ GX1_FAST_BAUD = 115200
 BACKLOG_S = 0.25
 #: After the last sample, so that the host can fetch it before the port goes.
 LINGER_S = 2.0
+#: After a host has opened the port, before the first sample: a board boots, and a host empties the port first.
+BOOT_S = 0.1
 _CHUNK = 64
 _TIMER_S = 0.001  # a timer may ring this much early
 NO_FAULTS = Faults()
@@ -64,7 +66,7 @@ def emulate(wanted: Wanted, tell: Callable[[str], None]) -> None:
 
 
 class Emulator:
-    """One sensor. It begins to measure when a host first opens the port."""
+    """One sensor. It boots when a host first opens the port, then begins to measure."""
 
     def __init__(self, wanted: Wanted, recording: Recording, truth: Truth | None, loop: bool) -> None:
         kind = KINDS[wanted.device]
@@ -91,6 +93,8 @@ class Emulator:
         try:
             while not self._terminal.hosted:
                 await asyncio.sleep(0.01)
+            self._now_s = loop.time()
+            await asyncio.sleep(BOOT_S)
             tasks += [loop.create_task(self._unplug(o.at_s, o.seconds)) for o in self._faults.unplugs]
             tasks += [loop.create_task(self._brown_out(o.at_s, o.seconds)) for o in self._faults.brownouts]
             async for sample, due_s in self._samples():

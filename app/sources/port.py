@@ -66,7 +66,9 @@ class Port(asyncio.Protocol):
         self._transport.write(data)
 
     def set_baud(self, baud: int) -> None:
-        """Change the speed; what came at the old one is forgotten. Raises ``PortLostError``."""
+        """Change the speed; what came at another one is forgotten. Raises ``PortLostError``."""
+        if self._link.baudrate == baud:
+            return  # what has come is sound: a board says only once what its columns are
         try:
             self._link.baudrate = baud
             self._link.reset_input_buffer()

@@ -159,7 +159,7 @@ class SerialPort(Live):
         while True:
             taken, port = self._seam.taken, None
             try:
-                port = await open_port(self._spec.path, FIRST_BAUD)
+                port = await open_port(self._spec.path, self._first_baud())
                 await self._start(port)
                 await self._read(port)
             except PortLostError as error:
@@ -175,6 +175,11 @@ class SerialPort(Live):
                 if port is not None:
                     await port.close()
             await asyncio.sleep(wait_s)
+
+    def _first_baud(self) -> int:
+        """The rate that is known, so that nothing said at once is lost by changing to it."""
+        known = self._started
+        return known.baud if known else self._spec.wish.baud or FIRST_BAUD
 
     async def _start(self, port: Port) -> None:
         known = self._started
