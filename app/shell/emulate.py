@@ -31,7 +31,7 @@ GX1_FAST_BAUD = 115200
 BACKLOG_S = 0.25
 #: After the last sample, so that the host can fetch it before the port goes.
 LINGER_S = 2.0
-#: After a host has opened the port, before the first sample: a board boots, and a host empties the port first.
+#: After a host opened the port, before the first sample: a board boots, and a host empties the port first.
 BOOT_S = 0.1
 _CHUNK = 64
 _TIMER_S = 0.001  # a timer may ring this much early
