@@ -17,7 +17,10 @@ COPY assets assets
 COPY recordings recordings
 RUN pip install --no-deps --no-build-isolation --editable . && chown walker recordings
 
+# Compiled here, so that the first walk need not wait for it.
 USER walker
+RUN python -c "from app.warm import warm_up; warm_up('kalman')"
+
 EXPOSE 8080
 HEALTHCHECK --interval=10s --timeout=3s --start-period=30s \
     CMD ["python", "-c", "import urllib.request; urllib.request.urlopen('http://127.0.0.1:8080/healthz', timeout=2)"]
