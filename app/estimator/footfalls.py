@@ -56,8 +56,7 @@ def footfall(state: KalmanState, stood: bool) -> int:
     if stood:
         state.quiet_ns = state.elapsed_ns
     if stood and state.moving == 0.0:
-        state.lift_row, state.lift_ns = state.row, state.elapsed_ns
-        state.from_x, state.from_y, state.from_z = state.px, state.py, state.pz
+        stand(state)
     elif not stood:
         state.moving = 1.0
     state.phase = STANCE if stood else SWING
@@ -84,6 +83,12 @@ def end_footfalls(state: KalmanState) -> int:
     """A gap in time: a swing whose contact was seen is over, one cut short keeps its travel."""
     happened = finish(state) if state.contact_row >= 0.0 else 0
     state.moving = 0.0
+    stand(state)
+    return happened
+
+
+@part
+def stand(state: KalmanState) -> None:
+    """The foot stands, or rests until level is found: the next swing begins here, if it does not stand on."""
     state.lift_row, state.lift_ns = state.row, state.elapsed_ns
     state.from_x, state.from_y, state.from_z = state.px, state.py, state.pz
-    return happened

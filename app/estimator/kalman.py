@@ -24,7 +24,7 @@ from app.estimator.detectors import (
     window_statistic,
 )
 from app.estimator.floor import begin_floor
-from app.estimator.footfalls import end_footfalls, footfall, note_contact
+from app.estimator.footfalls import end_footfalls, footfall, note_contact, stand
 from app.estimator.gait import STANCE
 from app.estimator.jolts import doubt_jolts, forget_jolts, mind_jolts
 from app.estimator.kalman_state import (
@@ -92,7 +92,9 @@ def step(state: KalmanState, reading: Reading) -> int:
         level(state)
         if happened & s.LEVEL_FOUND:
             begin_walk(state)
-    if not happened & s.RESTING:
+    if happened & s.RESTING:
+        stand(state)
+    else:
         predict(state, force_before, rate_before, dt_s)
         mind_clipping(state, rate_before, dt_s)
         mind_jolts(state, force_before, dt_s)

@@ -204,3 +204,17 @@ def test_start_heading_turns_everything() -> None:
     c, s = np.cos(1.0), np.sin(1.0)
     assert turned[:, :2] == pytest.approx(plain[:, :2] @ np.array([[c, s], [-s, c]]), abs=1e-6)
     assert turned[:, 2] == pytest.approx(plain[:, 2], abs=1e-6)
+
+
+def test_the_first_swing_after_a_gap_begins_after_it() -> None:
+    samples = foot("strides=12")
+    t_s = samples.matrix[:, 0] * 1e-9
+    swing_s = estimate(samples, KALMAN).strides[5].swing_s
+    for begin_s in np.arange(6.0, 7.0, 0.1):
+        gone = without(samples, begin_s, begin_s + 1.2)
+        tracker = estimate(gone, KALMAN)
+        (row,) = tracker.segments
+        first = next(s for s in tracker.strides if s.end_s > begin_s + 1.2)
+        assert first.start_s > gone.matrix[row, 0] * 1e-9 - 1e-9
+        assert first.swing_s < 1.2 * swing_s
+        assert first.start_s < t_s[-1]
