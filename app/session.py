@@ -148,7 +148,8 @@ class Session:
     def _advance(self, store: SensorStore, first_ns: int) -> None:
         """Every track takes a sensor's new samples; the very first says where its walk begins in time."""
         if store.origin_ns is None:
-            self._origin_ns = self._origin_ns or store.clock.line.host(first_ns)
+            if self._origin_ns is None:
+                self._origin_ns = store.clock.line.host(first_ns)
             store.origin_ns = self._origin_ns
         self.main.advance(store.sensor, store.samples)
         self.main.link(self.applying.worn)

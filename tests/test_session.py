@@ -24,6 +24,7 @@ from app.motion.samples import Sample, Samples
 from app.motion.snapshot import Snapshot
 from app.session import Session
 from app.settings import Settings
+from tests import sessions
 from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of, still, walk
 from tests.sessions import (
     GAIN,
@@ -235,3 +236,15 @@ def session_of_one() -> Session:
     )
     tell(session, LookBack())
     return session
+
+
+def test_a_foot_that_begins_later_keeps_its_place_in_time() -> None:
+    """Whatever the first stamp is: 0 is one like any other."""
+    for begin_ns in (0, 5_000_000_000):
+        session = Session(PAPERS)
+        for ns in range(0, 3_000_000_000, 10_000_000):
+            session.take(sessions.sample(begin_ns + ns)._replace(sensor="left"))
+            if ns >= 2_000_000_000:
+                session.take(sessions.sample(begin_ns + ns)._replace(sensor="right"))
+        assert [store.worn.offset_s for store in session.stores.values()] == [0.0, 2.0]
+        assert session.snapshot().t_s == pytest.approx(2.99)
