@@ -67,8 +67,9 @@ class Settings(Limited):
         True,
         Limit(
             "Zero-velocity update", "", "",
-            "The papers' algorithm: stop each stride's velocity where the foot stands. Off, every error it"
-            " ever made stays, and position runs away.",
+            "Stop each stride's velocity where the foot stands. Off, every error it ever made stays, and"
+            " position runs away.",
+            only="papers",
         ),
     )  # fmt: skip
     magnetometer: bool = setting(
@@ -165,7 +166,7 @@ class Settings(Limited):
         Limit(
             "Same floor within", "", "m",
             "Footprints that differ in height by less are taken, softly, to be on one floor; stairs and ramps"
-            " stay free, slopes below about 3 % come out level; 0: never.",
+            " stay free, slopes below 2.5 % come out level; 0: never.",
             0.0, 0.3, (0.0, 0.1), 0.005,
             only="kalman",
         ),
@@ -217,6 +218,11 @@ class Settings(Limited):
             only="kalman",
         ),
     )  # fmt: skip
+
+    @property
+    def looks_back(self) -> bool:
+        """Whether a walk is smoothed when it is over: only the Kalman filter's can be."""
+        return self.hindsight and self.estimator == "kalman"
 
     def differences(self, other: Settings) -> str:
         """In words, what changes from these settings to ``other``: ``gain_stance 1.05 → 2``."""

@@ -189,10 +189,9 @@ def gait_around(tracker: Tracker, samples: Blocks) -> Floats:
 
 def finish(tracker: Tracker, samples: Blocks) -> bool:
     """The walk is over: smooth it if its settings say so. Says whether they do."""
-    if not (tracker.settings.hindsight and tracker.settings.estimator == "kalman"):
-        return False
-    smooth(tracker, samples)
-    return True
+    if tracker.settings.looks_back:
+        smooth(tracker, samples)
+    return tracker.settings.looks_back
 
 
 def smooth(tracker: Tracker, samples: Blocks) -> None:

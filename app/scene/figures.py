@@ -74,7 +74,7 @@ def feet(snapshot: Snapshot, own: bool = False, warmth: Mapping[str, float] | No
 def hindsight(snapshot: Snapshot) -> str:
     """What a walk whose settings ask for hindsight shows: its live estimate, or the smoothed one."""
     track = snapshot.main
-    if not track.settings.hindsight or track.settings.estimator != "kalman":
+    if not track.settings.looks_back:
         return ""
     if track.smoothed_s is None:
         return '<div class="ss-note">Hindsight: live until the walk is paused or over, then smoothed.</div>'

@@ -79,7 +79,7 @@ def estimate(
     """Estimate a whole recording that has been read; its own remembered biases hold where none is given."""
     known = remembered(recording) | dict(biases or {})
     warm_up(settings.estimator)  # so that the seconds told are the estimator's, not the compiler's
-    if settings.hindsight:
+    if settings.looks_back:
         warm_hindsight()
     estimator_s = 0.0
     trackers: dict[str, Tracker] = {}
@@ -93,7 +93,7 @@ def estimate(
         estimator_s += time.perf_counter() - began
         trackers[sensor.sensor] = tracker
     began = time.perf_counter()
-    if settings.hindsight:
+    if settings.looks_back:
         linked = link_worn(trackers, worn(recording), stores, settings.feet_apart_m)
     else:
         linked = link_walked(trackers, worn(recording), settings)

@@ -8,9 +8,9 @@ import math
 import pytest
 
 from app.session import Session
-from app.settings import Settings
+from app.settings import BUILT_IN, Settings
 from app.shell import batch
-from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of
+from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of, walk
 from tests.sessions import fed, main_rows
 
 KEYS = {"recording", "samples", "dropped_rows", "duration_s", "rate_hz", "estimator_s", "settings", "feet"}
@@ -67,3 +67,12 @@ def test_the_lines_for_a_person_name_each_foot() -> None:
     text = "\n".join(batch.lines(batch.process("sim:walk?feet=2&strides=4", PAPERS)))
     assert "left: 5 strides" in text
     assert "right: 4 strides" in text
+
+
+def test_a_profile_for_hindsight_under_the_papers_estimator_is_the_papers_estimate() -> None:
+    recording = walk("feet=2&strides=8").recording
+    plain = batch.estimate(recording, BUILT_IN["papers"])
+    asked = batch.estimate(recording, BUILT_IN["hindsight"].with_changes({"estimator": "papers"}))
+    assert not asked.linked
+    for sensor, tracker in plain.trackers.items():
+        assert rows_of(asked.trackers[sensor]).tobytes() == rows_of(tracker).tobytes()
