@@ -183,8 +183,8 @@ class Applying:
         """The whole walk up to where the session has landed, unless its estimate is another by now."""
         if self.filling is None or job.number != self.filling.number:
             return
-        self.filling = None
-        if self.main is self._landed and self._catch_up(track):
+        landed, self._landed, self.filling = self._landed, None, None
+        if self.main is landed and self._catch_up(track):
             self.main = track
 
     def _catch_up(self, track: Track) -> bool:
@@ -296,7 +296,7 @@ class Applying:
         """Smooth the main track, unless it is about to change anyway or has been smoothed up to now."""
         settings, now_s = self.main.settings, max((s.elapsed_s for s in self._stores.values()), default=0.0)
         done = self.main.smoothed_s is not None and self.main.smoothed_s >= now_s
-        if settings.hindsight and settings.estimator == "kalman" and self._coming is None and not done:
+        if settings.looks_back and self._coming is None and not done:
             self._next = self._next or self.wanted
             job = self._job(asked, settings, True, LOOKED_BACK)
             self.wanted = self._fresh(replace(job, look_back=True))

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import contextlib
+import gc
+import weakref
 from itertools import pairwise
 from pathlib import Path
 
@@ -88,7 +90,10 @@ async def sought(path: Path, places: list[float], key: bytes, fill: bool) -> tup
                 job = session.applying.filling
                 assert job is not None
                 if fill:
+                    stub = weakref.ref(session.main)
                     session.applying.filled(job, job.run())
+                    gc.collect()
+                    assert stub() is None  # its rows are as many as the walk's
             else:
                 for stretch in item.steps():
                     session.take_stretch(stretch)
