@@ -87,7 +87,7 @@ class Work:
         while True:
             await asyncio.sleep(HALT_S)
             session, halted = self._session(), source().link in (Link.PAUSED, Link.ENDED)
-            if halted and session.main.settings.hindsight and session.number != seen:
+            if halted and session.main.settings.looks_back and session.number != seen:
                 self._take(Order(LookBack(), "hindsight", time.monotonic_ns()))
                 seen = self._session().number
 
@@ -125,9 +125,9 @@ class Work:
             for i in range(len(stores))
         ]
         surfaces = [np.concatenate([await job for job in row]) for row in jobs]
-        found = gains.best_of(surfaces)
-        self.sweep, self.progress = found, None
+        self.progress = None
         if epoch == self._session().epoch:
+            self.sweep = found = gains.best_of(surfaces)
             best = settings.with_changes({"gain_stance": found.best[0], "gain_swing": found.best[1]})
             self._take(order._replace(command=ReplaceCandidate(best, "best gains")))
 
