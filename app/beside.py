@@ -29,7 +29,7 @@ class Beside:
         """Another walk begins."""
         self._epoch = epoch
         self._true: dict[str, TrueWalk] = {}
-        self._errors_at: dict[str, int] = {}  # the row of the newest of them
+        self._errors_of: dict[str, tuple[str, int]] = {}  # of which track, up to which row
         self._own: dict[str, OwnWalk] = {}  # of sensors that tell their orientation
         #: The main track beside the truth over the last seconds, as ``Snapshot.errors``.
         self.errors: dict[str, Floats] = {}
@@ -54,8 +54,8 @@ class Beside:
                 name = f"truth{self._epoch}.{sensor}"
                 self._true[sensor] = TrueWalk(name, self._truth, sensor, store.begin_s)
             known = places[sensor] = self._true[sensor].look(store, main.settings)
-            if self._errors_at.get(sensor) != known.row:
-                self._errors_at[sensor] = known.row
+            if self._errors_of.get(sensor) != (main.name, known.row):
+                self._errors_of[sensor] = (main.name, known.row)
                 self.errors[sensor] = errors(self._true[sensor].recent, foot.tracker.rows, foot.turns)
         return places
 

@@ -7,7 +7,7 @@ import math
 import numpy as np
 import pytest
 
-from app.motion.commands import Order, RestartHere
+from app.motion.commands import Order, RestartHere, SetApplyAtOnce, SetCandidate
 from app.rotation import pitch_of, yaw_of
 from app.session import Session
 from app.settings import Settings
@@ -89,3 +89,20 @@ def test_pitches_are_those_of_one_after_another() -> None:
     q = np.random.default_rng(0).normal(size=(50, 4))
     q /= np.linalg.norm(q, axis=1)[:, None]
     np.testing.assert_allclose(pitches(q), [pitch_of((w, x, y, z)) for w, x, y, z in q.tolist()], atol=1e-14)
+
+
+def test_errors_are_those_of_the_track_that_is_applied_now() -> None:
+    """Also while no sample comes: a replay stands still while somebody tries settings."""
+    made = make_walk(OPTIONS)
+    session = Session(Settings(), truth=made.truth)
+    for sample in one_by_one(made.recording.sensors[0]):
+        session.take(sample)
+    before = session.snapshot().errors["foot"]
+    for command in (SetApplyAtOnce(True), SetCandidate((("zero_velocity", False),))):
+        session.apply(Order(command, "test", 0))
+    job = session.applying.wanted
+    assert job is not None
+    session.applying.adopt(job, job.run())
+    after = session.snapshot()
+    assert after.errors["foot"][-1, 1] == pytest.approx(after.main.feet[0].error_m, rel=1e-14)
+    assert not np.array_equal(after.errors["foot"], before)
