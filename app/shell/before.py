@@ -104,10 +104,12 @@ class Before:
     async def _fit(self, guide: Guide) -> None:
         made = time.strftime("%Y-%m-%dT%H:%M:%S%z")
         try:
-            self._results = await asyncio.to_thread(guide.results, made)
-            self._found = tuple(table(*self._results))
+            results = await asyncio.to_thread(guide.results, made)
+            found = tuple(table(*results))
         except ValueError as error:
-            self._found = (f"No calibration: {error}. Do it again.",)
+            results, found = None, (f"No calibration: {error}. Do it again.",)
+        if self._guide is guide and guide.done:  # else given up meanwhile, or a step back
+            self._results, self._found = results, found
 
     def _save(self) -> str:
         if self._results is None:

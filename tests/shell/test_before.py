@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from app.calibration.guide import Guide
 from app.calibration.words import Calibration, Correction
 from app.home import calibrations
 from app.motion.basics import InputError, Role
@@ -132,3 +134,33 @@ def test_the_preflight_ends_as_a_mark() -> None:
     assert [mark.split(":")[0] for mark in marks] == ["pre-flight with remarks"]
     assert "still good" in marks[0]
     assert "loop bad (skipped)" in marks[0]
+
+
+def test_a_calibration_given_up_while_it_is_worked_out_leaves_nothing(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    timeline = Timeline(make_calibration({"seed": "2"}).recording)
+    go_on, results = threading.Event(), Guide.results
+
+    def slowly(guide: Guide, made: str) -> tuple[Calibration, Calibration]:
+        go_on.wait(60.0)
+        return results(guide, made)
+
+    monkeypatch.setattr(Guide, "results", slowly)
+    now = before()
+
+    async def lead() -> None:
+        samples = timeline.cut(0, len(timeline), 0)
+        now.sample(samples[0])
+        now.calibrate(Calibrate("start", "foot"))
+        for sample in samples[1:]:
+            now.sample(sample)
+        await asyncio.sleep(0.1)
+        now.calibrate(Calibrate("cancel"))
+        go_on.set()
+        assert now._fitting is not None
+        await now._fitting
+
+    asyncio.run(asyncio.wait_for(lead(), 60.0))
+    with pytest.raises(InputError, match="no calibration to save"):
+        now.calibrate(Calibrate("save"))
