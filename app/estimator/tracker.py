@@ -177,7 +177,7 @@ class Tracker:
         self._contact, self.distance_m = base.contact, base.distance_m
         self.strides = [stride for stride in self.strides if stride.number <= base.strides]
         del self.steps[len(self.strides) :]
-        breaks = list(self.segments)
+        breaks = [row for row in self.segments if row >= self.rows.start]
         for event in events:
             while breaks and breaks[0] <= event[Event.LIFT_ROW]:
                 self._contact, _ = None, breaks.pop(0)

@@ -84,3 +84,18 @@ def test_only_who_asks_for_hindsight_gets_it() -> None:
     before = rows_of(tracker)
     finish(tracker, table_of(samples.matrix))
     assert not np.array_equal(rows_of(tracker), before)
+
+
+def test_the_first_stride_that_is_left_begins_at_the_footprint_before_it() -> None:
+    """Also where the walk was interrupted before its oldest row."""
+    samples = without(foot("strides=60&rate_hz=200&noise=1&seed=5"), 6.0, 8.0)
+    tracker, table = tracked(samples), table_of(samples.matrix)
+    tracker.drop_oldest()
+    table.drop_oldest()
+    base = tracker.checkpoints[BLOCK]
+    assert tracker.segments[0] < BLOCK
+    smooth(tracker, table)
+    assert base.contact is not None
+    first = next(stride for stride in tracker.strides if stride.number == base.strides + 1)
+    assert first.start_s == base.contact.t_s
+    assert first.stance_s > 0.0
