@@ -85,6 +85,7 @@ class LslSource(Inbox):
         try:
             inlet = self._pylsl.StreamInlet(found, max_buflen=_BUFFER_S, recover=True, processing_flags=flags)
             info = inlet.info(timeout=2.0)
+            inlet.open_stream(timeout=2.0)
         except (TimeoutError, RuntimeError, ValueError) as error:  # gone meanwhile
             _log.info("lsl: a stream could not be opened: %s", error)
             return
@@ -103,7 +104,6 @@ class LslSource(Inbox):
             f"{sensor}: the stream {info.name()} of {info.hostname()}",
             *reader.notes,
         ]
-        inlet.open_stream(timeout=2.0)
         self._readers = {**self._readers, identity: (inlet, reader)}
 
     def _as_told(self, sensor: str) -> str:

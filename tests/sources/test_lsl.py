@@ -90,3 +90,31 @@ def test_what_is_missing_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(__import__("sys").modules, "pylsl", None)
     with pytest.raises(InputError, match=r"pip install -e '\.\[lsl\]'"):
         open_source("lsl:")
+
+
+def test_a_stream_that_goes_while_it_is_opened_is_tried_again(
+    pylsl, name: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    opened, tries = pylsl.StreamInlet.open_stream, []
+
+    def sometimes(inlet: object, timeout: float) -> None:
+        tries.append(timeout)
+        if len(tries) == 1:
+            raise TimeoutError("the operation failed due to a timeout.")
+        opened(inlet, timeout)
+
+    monkeypatch.setattr(pylsl.StreamInlet, "open_stream", sometimes)
+
+    async def main() -> None:
+        sender, source = LslSender(pylsl, name, 100.0), LslSource(parse_spec(f"lsl:{name}"))
+        reader = Reader(source)
+        for i in range(20_000):
+            if reader.of("left"):
+                break
+            sender.send(walk(1, "left", i)[0])
+            await asyncio.sleep(STEP_NS * 1e-9)
+        assert reader.of("left")
+        reader.stop()
+
+    asyncio.run(main())
+    assert len(tries) > 1
