@@ -48,6 +48,7 @@ class Librarian:
         self._say, self._opened = say, opened
         self._sharing = False
         self._errands: set[asyncio.Task[None]] = set()
+        self._opening: asyncio.Task[None] | None = None
 
     async def look(self) -> None:
         """See what is in the folder, now and then, for as long as the program runs."""
@@ -60,7 +61,10 @@ class Librarian:
         match command:
             case Play(name):
                 self._say(f"Opening {name}")
-                self._send(self._compare(name) if name.lower().endswith(TRACK) else self._play(name))
+                if name.lower().endswith(TRACK):
+                    self._send(self._compare(name))
+                else:
+                    self._open_next(self._play(name))
             case Rename(name, to):
                 self._send(self._rename(name, to))
             case Share(name):
@@ -70,10 +74,17 @@ class Librarian:
                 if self.reference is not None:
                     self.reference = turned(self.reference, math.radians(degrees))
 
-    def _send(self, errand: Coroutine[Any, Any, None]) -> None:
+    def _send(self, errand: Coroutine[Any, Any, None]) -> asyncio.Task[None]:
         task = asyncio.create_task(self._told(errand))
         self._errands.add(task)
         task.add_done_callback(self._errands.discard)
+        return task
+
+    def _open_next(self, errand: Coroutine[Any, Any, None]) -> None:
+        """A recording that is still being read when another is asked for is not wanted any more."""
+        if self._opening is not None:
+            self._opening.cancel()
+        self._opening = self._send(errand)
 
     async def _told(self, errand: Coroutine[Any, Any, None]) -> None:
         try:
@@ -95,7 +106,7 @@ class Librarian:
 
     def open(self, spec: str, changes: bool) -> None:
         """Play what a SPEC names, as soon as it is read."""
-        self._send(self._open(spec, changes))
+        self._open_next(self._open(spec, changes))
 
     async def _compare(self, name: str) -> None:
         """A GPS track does not take the walk's place: it is shown beside it."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import threading
 from pathlib import Path
 
 import pytest
@@ -12,6 +13,7 @@ from app.motion.commands import Play, Rename, Seek, SetDeclination, Share
 from app.motion.source import Link
 from app.settings import Settings
 from app.shell.librarian import Librarian
+from app.shell.librarian import opened as opened_by_us
 from app.sources.glanced import Glanced
 from app.sources.source import Source
 from tests.formats.test_glance import WHOLE
@@ -96,3 +98,31 @@ def test_a_file_is_renamed_and_listed_so(folder: Path) -> None:
     librarian, said, _ = asked(folder, Rename("walk.mcap", "stairs"))
     assert "stairs.mcap" in {file.name for file in librarian.files}
     assert said == ["walk.mcap is now stairs.mcap"]
+
+
+def test_who_asks_for_another_before_the_first_is_read_gets_the_other(
+    folder: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (folder / "other.mcap").write_bytes((folder / "walk.mcap").read_bytes())
+    go_on = threading.Event()
+
+    def slowly(spec: str, changes: bool) -> Source:
+        if spec.endswith("walk.mcap"):
+            go_on.wait(60.0)
+        return opened_by_us(spec, changes)
+
+    monkeypatch.setattr("app.shell.librarian.opened", slowly)
+    opened: list[str] = []
+
+    async def ask() -> None:
+        desk = Librarian(folder, lambda _: None, lambda spec, source: opened.append(source.info.name))
+        desk.take(Play("walk.mcap"), Settings())
+        await asyncio.sleep(0.2)
+        desk.take(Play("other.mcap"), Settings())
+        while not opened:
+            await asyncio.sleep(0.01)
+        go_on.set()
+        await asyncio.sleep(0.5)
+
+    asyncio.run(asyncio.wait_for(ask(), 60.0))
+    assert opened == ["other.mcap"]
