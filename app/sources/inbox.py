@@ -45,13 +45,14 @@ class Inbox(Live):
         self._sensors: dict[str, Role] = {}
         self._overflowed = 0
         self._last_s: float | None = None
+        self._closed = False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._news = asyncio.Event()
         self._woken = False
 
     def put(self, samples: Sequence[Sample]) -> None:
-        """Hand samples over, from any thread; never waits."""
-        if not samples:
+        """Hand samples over, from any thread; never waits. Once it is closed nothing is kept."""
+        if not samples or self._closed:
             return
         with self._lock:
             self._waiting += samples
@@ -132,4 +133,5 @@ class Inbox(Live):
                 await self._news.wait()
 
     def close(self) -> None:
-        """Nothing is held open."""
+        """Nobody reads any more: keep nothing for them."""
+        self._closed, self._waiting = True, []

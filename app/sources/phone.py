@@ -15,6 +15,7 @@ from app.sources.listening import options_of
 from app.sources.spec import Spec
 
 OK, BAD, TOO_MANY = 200, 499, 499  # the app shows its user the text of a 499
+OVER = "this walk is over: begin it anew with --source phone:"
 
 
 class PhoneSource(Inbox):
@@ -40,12 +41,16 @@ class PhoneSource(Inbox):
 
     def take(self, data: bytes | str) -> str:
         """A message of ours; what to answer."""
+        if self._closed:
+            return encode_refusal(OVER)
         samples, answer = self._intake.take(data, time.monotonic_ns())
         self.put(samples)
         return _answer(answer)
 
     def push(self, data: bytes, query: Mapping[str, str]) -> tuple[int, str]:
         """A body that was pushed, by Sensor Logger or a message of ours: status and text of the answer."""
+        if self._closed:
+            return BAD, OVER
         pushed = parse(data)
         if isinstance(pushed, Malformed):
             answer = self.take(data)

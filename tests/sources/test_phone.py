@@ -75,3 +75,15 @@ def test_only_the_walks_page_has_a_door_for_it() -> None:
         open_source("phone:9000")
     with pytest.raises(InputError, match="expected one of"):
         open_source("phone:?speed=2")
+
+
+def test_a_walk_that_was_left_takes_nothing_more_and_says_so() -> None:
+    """The page may show a recording by now, while a phone goes on sending."""
+    source = phone()
+    source.take(encode_json(1, walk(5)))
+    source.close()
+    answer = decode_reply(source.take(encode_json(1, walk(10))))
+    assert isinstance(answer, Refused)
+    assert "over" in answer.why
+    assert source.push(json.dumps(pushes(1)[0]).encode(), {})[0] == 499
+    assert waiting(source) == []
