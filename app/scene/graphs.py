@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from viser import uplot
 
 from app.motion.basics import Role
-from app.motion.snapshot import FootView, Graph, Snapshot
+from app.motion.snapshot import Graph, Snapshot
 from app.scene.colours import FOOT, SWING, TRUTH, Rgb, css
 from app.scene.guard import finite_rows
 
@@ -53,7 +53,7 @@ class Graphs:
 
     def __init__(self, gui: viser.GuiApi, container: Any) -> None:
         self._gui, self._container = gui, container
-        self._shown: tuple[str, tuple[str, ...], tuple[Role, ...]] | None = None  # estimator, graphs, feet
+        self._shown: tuple[str, tuple[str, ...], tuple[tuple[str, Role], ...]] | None = None
         self._plots: list[tuple[viser.GuiUplotHandle, Callable[[Snapshot, Floats], Columns]]] = []
         self._drawn: object = None
 
@@ -64,20 +64,18 @@ class Graphs:
         self._drawn = snapshot.graphs
         feet = [f for f in snapshot.main.feet if f.sensor in snapshot.graphs]
         kind = PENDULUM if snapshot.pendulum else TRUE_WALK if snapshot.errors else WALK
-        shown = (snapshot.main.settings.estimator, kind, tuple(f.role for f in feet))
+        shown = (snapshot.main.settings.estimator, kind, tuple((f.sensor, f.role) for f in feet))
         if shown != self._shown:
-            self._make(feet, *shown)
+            self._make(*shown)
             self._shown = shown
         t_s = times([snapshot.graphs[f.sensor] for f in feet])
         for plot, columns in self._plots:
             plot.data = (t_s, *columns(snapshot, t_s))
 
-    def _make(
-        self, feet: list[FootView], estimator: str, kind: tuple[str, ...], roles: tuple[Role, ...]
-    ) -> None:
+    def _make(self, estimator: str, kind: tuple[str, ...], feet: tuple[tuple[str, Role], ...]) -> None:
         for plot, _ in self._plots:
             plot.remove()
-        sensors = [f.sensor for f in feet]
+        sensors, roles = [sensor for sensor, _ in feet], [role for _, role in feet]
         title = RATE if estimator == "papers" else STATISTIC
         with self._container:
             self._plots = (

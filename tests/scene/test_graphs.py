@@ -52,6 +52,15 @@ def test_graphs_are_made_anew_for_other_feet(scene: Scene) -> None:
     assert all(plot._impl.removed for plot in drawn)
 
 
+def test_another_walks_foot_has_its_graphs_whatever_its_sensor_is_called(scene: Scene) -> None:
+    one = fakes.snapshot(5.0)
+    (foot,), (graph,) = one.main.feet, one.graphs.values()
+    other = one.main._replace(feet=(foot._replace(sensor="other"),))
+    scene.panel.show_graphs(one)
+    scene.panel.show_graphs(replace(one, main=other, graphs={"other": graph}))
+    assert [len(plot.data) for plot, _ in scene.panel._graphs._plots] == [4, 2, 2]
+
+
 def test_the_threshold_is_drawn_as_it_was(scene: Scene) -> None:
     scene.draw(fakes.snapshot(5.0), fakes.status())
     judged = scene.panel._graphs._plots[0][0]
