@@ -1,5 +1,5 @@
+// Edge, door: a phone's motion as messages (docs/message.md), sent again until they are acknowledged.
 "use strict";
-// A phone's motion as messages (docs/message.md), sent again until they are acknowledged.
 
 const RADIANS = Math.PI / 180, GRAVITY = 9.80665;
 const STILL_READINGS = 30;      // half a second: by these the sign of the force is told

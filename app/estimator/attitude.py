@@ -113,7 +113,7 @@ def share_of(gain: float, dt_s: float) -> float:
 def complementary(
     q_nb: Quaternion, turn: Quaternion, tilt: Quaternion, yaw: Quaternion, share: float
 ) -> Quaternion:
-    """q̇ = ½ q ⊗ ω + k (±q_s − q̂), (2) and (3.27), over one sample; then normalised.
+    """q̇ = ½ q ⊗ ω + k (±q_s − q̂), (2) and (3.26), over one sample; then normalised.
 
     ``turn`` integrates the first term, ``share`` = 1 − e^(−k·dt) the second.
     """

@@ -1,4 +1,4 @@
-// Uploads: the chosen file goes to the door as it is; how far it is and what became of it is told beside it.
+// Edge, scene: uploads: the chosen file goes to the door as it is; what becomes of it is told beside it.
 (() => {
   const most = 1e9;
   document.addEventListener("change", (event) => {

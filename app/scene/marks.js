@@ -1,5 +1,5 @@
-// Marks what our style sheet tells by its contents. `:has()` would say the same, but then a browser looks at two
-// thirds of the page again at every word that changes in the panel, while it should draw the shoe.
+// Edge, scene: marks what our style sheet tells by its contents. `:has()` would say the same, but then a browser
+// looks at two thirds of the page again at every word that changes in the panel, while it should draw the shoe.
 (() => {
   const resets = new Set(RESETS);
   const mark = (element, name, value = "") => element && element.setAttribute(`data-ss-${name}`, value);

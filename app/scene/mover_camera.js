@@ -1,4 +1,4 @@
-// The town mode's camera: held still, wide as the window or as the wall it is a tile of; keys to the server.
+// Edge, scene: the town mode's camera: held still, wide as the window or the wall it is a tile of; its keys.
 const mover = MOVER_TOLD;
 (() => {
   const asked = new URLSearchParams(location.search);

@@ -1,4 +1,4 @@
-// What is drawn over the town: feet, map, score, words. State comes as JSON and is only ever set as text.
+// Edge, scene: what is drawn over the town: feet, map, score, words. State comes as JSON and is set as text only.
 (() => {
   const NS = "http://www.w3.org/2000/svg";
   const make = (parent, kind, name, text) => {

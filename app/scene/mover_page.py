@@ -21,7 +21,7 @@ from app.world import Town
 
 HERE = Path(__file__).parent
 HUD_S, TEXT_S, GRAPH_S = 1 / 15, 0.12, 0.1
-#: Up and down at most; a picture wider than high keeps the sides in bounds (mover.js).
+#: Up and down at most; a picture wider than high keeps the sides in bounds (mover_camera.js).
 FOV_DEG = 62.0
 NEAR_M, FAR_M = 0.1, 1600.0
 _TARGET_RADIUS_M = 1.5

@@ -1,4 +1,4 @@
-// Keys, and a window without focus that still comes back after the server restarts.
+// Edge, scene: keys, and a window without focus that still comes back after the server restarts.
 (() => {
   const presses = KEY_PRESSES;
   const typing = (target) =>

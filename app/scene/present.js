@@ -1,4 +1,4 @@
-// Keeps the page on the present: says how old it is when nothing comes, and connects anew after a sleep.
+// Edge, scene: keeps the page on the present: says how old it is when nothing comes, connects anew after a sleep.
 (() => {
   const TICK_MS = 250, STALE_MS = 2200, SLEPT_MS = 3000, SILENT_TICKS = 40, AGAIN_TICKS = 240;
   let link = null; // viser's worker, which holds the websocket

@@ -1,4 +1,4 @@
-// A ribbon is at least as broad as the line that it stands for, in pixels, from however far away it is seen.
+// Edge, scene: a ribbon is at least as broad as the line that it stands for, in pixels, however far away.
 (() => {
   const pixel = { value: 0 }; // what a pixel covers a metre away, metres
   let kinds = 0; // of material that know it

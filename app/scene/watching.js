@@ -1,4 +1,4 @@
-// A viewer's page says so, and its controls are still: the door lets nothing of theirs through anyway.
+// Edge, scene: a viewer's page says so, and its controls are still: the door lets nothing of theirs through.
 (() => {
   if (document.documentElement.dataset.visitor !== "viewer") return;
   const CONTROL = "input, textarea, select, button, label, [role=slider], [role=combobox], .mantine-Slider-root";
