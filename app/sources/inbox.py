@@ -45,14 +45,14 @@ class Inbox(Live):
         self._sensors: dict[str, Role] = {}
         self._overflowed = 0
         self._last_s: float | None = None
-        self._closed = False
+        self._left = False
         self._loop: asyncio.AbstractEventLoop | None = None
         self._news = asyncio.Event()
         self._woken = False
 
     def put(self, samples: Sequence[Sample]) -> None:
         """Hand samples over, from any thread; never waits. Once it is closed nothing is kept."""
-        if not samples or self._closed:
+        if not samples or self._left:
             return
         with self._lock:
             self._waiting += samples
@@ -134,4 +134,4 @@ class Inbox(Live):
 
     def close(self) -> None:
         """Nobody reads any more: keep nothing for them."""
-        self._closed, self._waiting = True, []
+        self._left, self._waiting = True, []

@@ -41,7 +41,7 @@ class PhoneSource(Inbox):
 
     def take(self, data: bytes | str) -> str:
         """A message of ours; what to answer."""
-        if self._closed:
+        if self._left:
             return encode_refusal(OVER)
         samples, answer = self._intake.take(data, time.monotonic_ns())
         self.put(samples)
@@ -49,7 +49,7 @@ class PhoneSource(Inbox):
 
     def push(self, data: bytes, query: Mapping[str, str]) -> tuple[int, str]:
         """A body that was pushed, by Sensor Logger or a message of ours: status and text of the answer."""
-        if self._closed:
+        if self._left:
             return BAD, OVER
         pushed = parse(data)
         if isinstance(pushed, Malformed):
