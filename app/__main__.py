@@ -48,7 +48,7 @@ COMMANDS = {
 
 
 def parser() -> Parser:
-    """All commands and their options (contract.md)."""
+    """All commands and their options."""
     top = Parser(
         prog="stridescope", description="Walk with inertial sensors on your feet, and watch it live."
     )

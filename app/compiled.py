@@ -120,8 +120,3 @@ def part(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """
     register_jitable(**_OPTIONS, no_cpython_wrapper=True)(function)
     return function
-
-
-def is_compiled(function: Callable[..., object]) -> bool:
-    """Whether ``function`` has been compiled or loaded in this process."""
-    return bool(getattr(function, "signatures", ()))

@@ -9,7 +9,6 @@ from dataclasses import replace
 import numpy as np
 
 from app.blocks import BLOCK, Blocks
-from app.clocks import Clock
 from app.estimator.tracker import Tracker
 from app.gestures.default import DefaultDecoder, DefaultSettings
 from app.gestures.intake import FEET, Intake
@@ -53,8 +52,8 @@ class Attitude:
 class Hearing:
     """One pair of feet, one decoder."""
 
-    def __init__(self, role_of: Callable[[str], Role], clock_of: Callable[[str], Clock]) -> None:
-        self.intake = Intake(role_of, clock_of)
+    def __init__(self, role_of: Callable[[str], Role]) -> None:
+        self.intake = Intake(role_of)
         self.decoder: DefaultDecoder | PapersDecoder = DefaultDecoder()
         self.settings = DefaultSettings()
         self.decision = standing(0, "")

@@ -13,7 +13,6 @@ from collections.abc import Callable
 from dataclasses import replace
 from statistics import median
 
-from app.clocks import Clock, LiveClock
 from app.gestures import hunt as hunts
 from app.gestures.setup import SetUpGuide
 from app.gestures.steering import STOP, Comfort, Walker, steer
@@ -63,14 +62,13 @@ class Visiting:
         town: Town,
         *,
         role_of: Callable[[str], Role] = role_of,
-        clock_of: Callable[[str], Clock] = lambda sensor: LiveClock(),
         name: str = "",
         decoder: str = "default",
         simulated: GestureOptions | None = None,
     ) -> None:
         self.town, self.name, self.simulated = town, name, simulated is not None
-        self.sensors = Hearing(role_of, clock_of)
-        self._puppets = Hearing(role_of, lambda sensor: LiveClock())
+        self.sensors = Hearing(role_of)
+        self._puppets = Hearing(role_of)
         self._live = LiveFeet(simulated or GestureOptions())
         self._stroller: Stroller | None = None
         self.switches = {key: at_first for key, (_, at_first, _) in SWITCHES.items()}

@@ -1,4 +1,4 @@
-"""`stridescope gestures`: contract.md's object, lines for a person, one line for an error."""
+"""`stridescope gestures`: one JSON object, lines for a person, one line for an error."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ SCRIPT = "sim:gestures?script=none:2,forward:5,none:2,turn_ccw:4,none:2&vary=0"
 
 
 @pytest.mark.parametrize("decoder", ["default", "papers"])
-def test_json_is_the_contracts_object(decoder: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_is_one_object_with_every_key(decoder: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["gestures", SCRIPT, "--decoder", decoder, "--json"]) == 0
     told = json.loads(capsys.readouterr().out)
     decisions = told["decisions"]

@@ -29,7 +29,3 @@ class Counters:
         """Count one refusal: ``host``, ``origin``, ``token`` or ``full``."""
         name = f"refused_{what}"
         setattr(self, name, getattr(self, name) + 1)
-
-    def as_dict(self) -> dict[str, int | dict[str, int]]:
-        """All numbers by name, for a display."""
-        return {**vars(self), "dropped_messages": dict(self.dropped_messages)}

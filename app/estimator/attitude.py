@@ -63,7 +63,7 @@ def own_yaw(tilt: Quaternion, q_nb: Quaternion) -> Quaternion:
     """The yaw that brings ``tilt`` nearest to the estimate: the twist about down of q ⊗ tilt*.
 
     Without a magnetometer the static quaternion takes the estimate's own heading, so that gravity
-    corrects roll and pitch and turns nothing about the vertical (science: no magnetometer).
+    corrects roll and pitch and turns nothing about the vertical.
     """
     r = multiply(q_nb, conjugate(tilt))
     norm = math.sqrt(r[0] * r[0] + r[3] * r[3])

@@ -63,7 +63,6 @@ class Keeper:
         self._sensors: dict[str, _Channels] = {}
         self._ours = {topic: self._json(topic, *words) for topic, words in _OURS.items()}
         self._about = {**about, "clock_ns": clock_ns}
-        self._log_ns = clock_ns
 
     def begin(self, host_ns: int) -> bytes:
         """The first bytes of the file; the first chunk will tell about the recording."""

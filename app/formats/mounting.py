@@ -35,11 +35,6 @@ def parse_axes(text: str) -> Axes:
     return axes
 
 
-def write_axes(axes: Axes) -> str:
-    """The inverse of ``parse_axes``."""
-    return ",".join(("-" if sign < 0 else "") + _LETTERS[index] for index, sign in axes)
-
-
 def rotation(axes: Axes) -> Floats:
     """The matrix [3, 3] that takes sensor vectors into toe, right, down."""
     matrix = np.zeros((3, 3))

@@ -9,7 +9,7 @@ from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-from app.clocks import Clock
+from app.clocks import LiveClock
 from app.gestures.words import SILENCE_NS, FootReading
 from app.motion.basics import Role
 from app.motion.samples import Sample
@@ -25,7 +25,7 @@ class Sensor:
     """What is known of one foot's sensor."""
 
     name: str = ""
-    clock: Clock | None = None
+    clock: LiveClock | None = None
     newest_ns: int | None = None  # on the host's clock, by the line
     heard_ns: int | None = None  # when it came
     stamps: deque[int] = field(default_factory=lambda: deque(maxlen=_RATE_SAMPLES))
@@ -39,10 +39,10 @@ class Sensor:
 
 
 class Intake:
-    """Takes samples in the order they come; ``clock_of`` makes a clock for a sensor's name."""
+    """Takes samples in the order they come. Arrivals tell the clocks, a replay's too: it keeps their pace."""
 
-    def __init__(self, role_of: Callable[[str], Role], clock_of: Callable[[str], Clock]) -> None:
-        self._role_of, self._clock_of = role_of, clock_of
+    def __init__(self, role_of: Callable[[str], Role]) -> None:
+        self._role_of = role_of
         self.swapped = False
         self.feet = {role: Sensor() for role in FEET}
         self.strangers: dict[str, Role] = {}  # sensors nobody gave a side, and the side they got
@@ -54,7 +54,7 @@ class Intake:
             return None
         foot = self.feet[role]
         if foot.name != sample.sensor or foot.clock is None:
-            foot.name, foot.clock = sample.sensor, self._clock_of(sample.sensor)
+            foot.name, foot.clock = sample.sensor, LiveClock()
         foot.clock.add(sample.device_ns, sample.host_ns)
         t_ns = foot.clock.line.host(sample.device_ns)
         foot.heard_ns = sample.host_ns

@@ -8,8 +8,6 @@ from app.gestures.words import Decision
 from app.motion.basics import MotionId
 
 PACKET = struct.Struct(">hh")  # motion id, speed in mm/s: signed, big-endian
-#: Send at least so often, and on every change.
-LONGEST_PAUSE_S = 0.1
 _MOST = 2**15 - 1
 
 

@@ -70,7 +70,6 @@ class SetUpGuide:
     _now_ns: int = 0
     _note: str = ""
     _rest_radps: float = 0.0
-    _shaken_ns: int = 0
     _seen: list[float] = field(default_factory=lambda: [-1e9, -1e9])
     _actions: dict[str, list[Action]] = field(default_factory=lambda: {step.name: [] for step in STEPS})
 

@@ -30,13 +30,6 @@ th{color:var(--soft);font-weight:600}th.n,td.n{text-align:right;white-space:nowr
 .plots{display:grid;grid-template-columns:repeat(auto-fill,minmax(min(100%,30rem),1fr));gap:1.2rem}
 summary{cursor:pointer;color:var(--soft)}code{font-size:.9em}
 """
-#: Curves differ by their dashes too, so that nobody needs to tell colours apart.
-_DASHES = ("none", "7 3", "2 3", "9 3 2 3", "4 2", "1 3 6 3", "12 4")
-_COLOURS = "".join(
-    f".c{i} path,.c{i} circle{{fill:var(--c{i});stroke:var(--c{i})}}"
-    f".c{i} .line{{fill:none;stroke-dasharray:{dash}}}"
-    for i, dash in enumerate(_DASHES)
-)
 
 
 def report(studies: Sequence[Study], about: Mapping[str, str]) -> str:

@@ -13,7 +13,7 @@ from collections.abc import Callable
 from app.formats import osc
 from app.motion.basics import InputError
 
-#: A packet at least so often (contract.md: ten a second).
+#: A packet at least so often (ten a second are promised).
 PACKET_S = 0.08
 #: Axes at most so often while they change, and at least so often while any is not 0.
 AXES_S, AXES_AGAIN_S = 1 / 30, 0.2

@@ -1,4 +1,4 @@
-"""Edge: a processed walk as files: trajectory, strides and TUM (contract: ``process --out``)."""
+"""Edge: a processed walk as files: trajectory, strides and TUM: ``process --out``."""
 
 from __future__ import annotations
 

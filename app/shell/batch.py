@@ -119,7 +119,7 @@ def worn(recording: Recording) -> dict[str, Worn]:
 
 
 def summary(done: Processed) -> dict[str, object]:
-    """What ``process --json`` prints (contract.md)."""
+    """What ``process --json`` prints."""
     sensors = done.recording.sensors
     return {
         "recording": done.recording.name,
@@ -271,7 +271,7 @@ def _orientation(samples: Samples) -> Floats:
 
 
 def gestures_summary(done: Decoded) -> dict[str, object]:
-    """What ``gestures --json`` prints (contract.md)."""
+    """What ``gestures --json`` prints."""
     return {
         "recording": done.recording.name,
         "format": done.recording.format,

@@ -19,7 +19,6 @@ from app.outputs.files import write_new
 from app.sources.opening import open_recording
 from app.sources.spec import parse_spec
 
-FORMATS = ("csv", "tum", "strides", "gpx", "kml", "geojson", "sto")
 MAPS = {"gpx": geo.gpx, "kml": geo.kml, "geojson": geo.geojson}
 _ENDINGS = {"strides": "_strides.csv", "csv": "_samples.csv"}
 _POINTS_HZ = 10.0  # on a map

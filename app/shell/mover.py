@@ -12,7 +12,6 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass
 
-from app.clocks import Clock, LiveClock
 from app.damage import Damage
 from app.door.access import Access
 from app.door.front import Door
@@ -145,7 +144,7 @@ class Mover:
         for feed in self._feeds:
             closing.callback(feed.source.close)
         self._visiting = Visiting(
-            make_town(), role_of=self._role, clock_of=self._clock, name=self._name(), decoder=options.decoder,
+            make_town(), role_of=self._role, name=self._name(), decoder=options.decoder,
             simulated=live_options(options),
         )  # fmt: skip
         self._senders = self._open_senders()
@@ -239,10 +238,6 @@ class Mover:
             return SIDES[sensor]
         told = (feed.source.info.sensors.get(sensor) for feed in self._feeds)
         return next((role for role in told if role is not None), role_of(sensor))
-
-    def _clock(self, sensor: str) -> Clock:
-        """Arrivals tell every clock, a replay's too: its samples are released at their own pace."""
-        return LiveClock()
 
     def _name(self) -> str:
         return " and ".join(feed.source.info.name for feed in self._feeds) or "simulated feet"

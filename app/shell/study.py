@@ -79,7 +79,7 @@ def _walks(specs: Sequence[str]) -> dict[str, Samples]:
 
 
 def summary(outcome: Outcome) -> dict[str, object]:
-    """What ``study --json`` prints (contract.md)."""
+    """What ``study --json`` prints."""
     return {
         "studies": {s.name: {"title": s.title, "config": dict(s.config)} for s in outcome.studies},
         "rows": [as_json(row) for s in outcome.studies for row in s.rows],

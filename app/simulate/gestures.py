@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from app.motion.basics import Floats, InputError, Ints, MotionId
+from app.motion.basics import Floats, InputError, MotionId
 from app.motion.recording import Recording
 from app.motion.samples import Samples
 from app.motion.source import Truth
@@ -106,17 +106,6 @@ class SimulatedGestures:
     feet: Mapping[str, GestureFoot]
     bouts: tuple[Bout, ...]
     options: GestureOptions
-
-    def motion_at(self, t_s: Floats) -> Ints:
-        """The ``MotionId`` performed at these seconds [n]; 0 outside every bout."""
-        onset = np.array([bout.onset_s for bout in self.bouts])
-        end = np.array([bout.end_s for bout in self.bouts])
-        motion = np.array([int(bout.motion) for bout in self.bouts], dtype=np.int64)
-        if not len(motion):
-            return np.zeros(len(t_s), dtype=np.int64)
-        i = np.clip(np.searchsorted(onset, t_s, side="right") - 1, 0, None)
-        found: Ints = np.where((t_s >= onset[i]) & (t_s <= end[i]), motion[i], 0)
-        return found
 
 
 def make_gestures(options: Mapping[str, str]) -> SimulatedGestures:

@@ -24,7 +24,6 @@ from app.studies.words import Curve, Done, Plot, Row, Study, Table, Task
 GAINS_STANCE = np.linspace(0.6, 1.6, 21)
 GAINS_SWING = np.array([0.0, 0.005, 0.01, 0.015, 0.02])
 WIDE_STANCE = np.concatenate([[0.0, 0.05], np.linspace(0.1, 4.0, 40)])
-_ENDS = slice(-1, None)
 CONSTANT = (0.01, 0.15, 1.0, 5.0)  # Fig. 14 of the 2012 paper
 _TRACK = (
     "walks around a running track that were never published; ours are simulated, with the same sensor class"

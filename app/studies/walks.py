@@ -143,7 +143,7 @@ def noise_study(config: WalkConfig, done: Sequence[Done]) -> Study:
         asdict(config),
         (*rows, *_in_words(judge, config, errors, long)),
         (_ends_plot("Fig. 84 (and 12): where the walks end", errors[1:], _names(_TABLE_10)[1:]),
-         _growth_plot(config, long), shortfall_plot()),
+         _growth_plot(long), shortfall_plot()),
     )  # fmt: skip
 
 
@@ -208,7 +208,7 @@ def _ends_plot(title: str, errors: Sequence[Floats], names: Sequence[str]) -> Pl
     return Plot(title, "east error, m", "north error, m", curves, note)
 
 
-def _growth_plot(config: WalkConfig, long: Floats) -> Plot:
+def _growth_plot(long: Floats) -> Plot:
     strides = np.arange(1.0, LONG + 1)
     spread = np.std(long[:, :, EAST], axis=0, ddof=1)
     root = spread[99] * np.sqrt(strides / 100.0)
@@ -235,7 +235,7 @@ def bias_study(config: BiasConfig, done: Sequence[Done]) -> Study:
         " (accelerometer 0.0981 m/s², magnetometer 2.4 mG) on every axis; the gyro's as measured. Errors are"
         " estimate less truth, as in Table 11.",
         asdict(config),
-        (*rows, *_bias_in_words(judge, config, chosen, found[-1])),
+        (*rows, *_bias_in_words(judge, chosen, found[-1])),
         (_ends_plot("Fig. 85 (and 13): where the walks end", chosen, list(CASES.values())),
          *_long_plots(config, found[-1], done[-1].value[0])),
         (_signs_table(chosen, plain),),
@@ -258,7 +258,7 @@ def table_11(judge: Judge, which: str, error: Floats) -> list[Row]:
     ]  # fmt: skip
 
 
-def _bias_in_words(judge: Judge, config: BiasConfig, errors: Sequence[Floats], long: Floats) -> list[Row]:
+def _bias_in_words(judge: Judge, errors: Sequence[Floats], long: Floats) -> list[Row]:
     east = errors[-1][:, EAST]
     drift = np.mean(long[:, :, EAST], axis=0)
     return [

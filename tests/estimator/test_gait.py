@@ -88,7 +88,7 @@ def literal(rates: Floats, threshold: float, count: int) -> int:
 def test_a_hundred_strides_are_a_hundred_and_the_literal_code_finds_many_more(
     query: str, threshold: float
 ) -> None:
-    """Science: the sample counter."""
+    """The sample counter as printed, and as it is here."""
     samples = foot(query)
     tracker = estimate(samples, threshold_radps=threshold)
     assert tracker.stride_count == 100

@@ -77,7 +77,7 @@ def other_rate(query: str, choice: str) -> Floats:
 
 
 def test_the_mean_rate_turns_the_foot() -> None:
-    """Science: which ω. On the papers' model, whose ω jumps, the height tells the three apart."""
+    """Which ω: on the papers' model, whose ω jumps, the height tells the three apart."""
     _, error = errors_of("model=papers&rate_hz=100")
     down = error[-1, 2]
     assert abs(down) < 2.0

@@ -150,7 +150,7 @@ def test_corrected_rows_are_an_integral_of_one_another(query: str) -> None:
 
 @pytest.mark.parametrize("rate_hz", [50, 100, 400])
 def test_without_back_dated_edges_the_walk_falls_short_by_metres(rate_hz: int) -> None:
-    """Science: back-dating. Velocity counted only between the machine's late edges, and corrected there."""
+    """Back-dating: velocity counted only between the machine's late edges, and corrected there."""
     query = f"model=papers&rate_hz={rate_hz}"
     samples = foot(query)
     tracker = estimate(samples, min_duration_s=0.18, gain_stance=0.0)

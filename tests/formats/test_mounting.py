@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
-from app.formats.mounting import describe, parse_axes, rotation, snap, turn, write_axes
+from app.formats.mounting import Axes, describe, parse_axes, rotation, snap, turn
 from app.motion.basics import InputError
 
 SIGNED = [sign + letter for letter in "xyz" for sign in ("", "-")]
@@ -17,6 +17,11 @@ RIGHT_HANDED = [
     and np.linalg.det([[(a[-1] == b) * (-1 if "-" in a else 1) for b in "xyz"] for a in axes]) > 0
 ]
 FORCE = hnp.arrays(float, 3, elements=st.floats(-10, 10)).filter(lambda f: np.linalg.norm(f) > 0.1)
+
+
+def write_axes(axes: Axes) -> str:
+    """The inverse of ``parse_axes``."""
+    return ",".join(("-" if sign < 0 else "") + "xyz"[index] for index, sign in axes)
 
 
 def test_there_are_24_mountings() -> None:

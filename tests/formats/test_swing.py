@@ -1,11 +1,12 @@
 import numpy as np
 import pytest
 
-from app.formats.mounting import AS_GIVEN, Axes, parse_axes, rotation, write_axes
+from app.formats.mounting import AS_GIVEN, Axes, parse_axes, rotation
 from app.formats.reading import read
 from app.formats.swing import face_forward
 from app.motion.basics import Floats, Role
 from app.motion.samples import Samples
+from tests.formats.test_mounting import write_axes
 
 FROM_ABOVE = ["x,y,z", "y,-x,z", "-x,-y,z", "-y,x,z"]
 

@@ -6,14 +6,13 @@ from itertools import pairwise
 
 import pytest
 
-from app.clocks import LiveClock
 from app.gestures.intake import Intake
 from app.motion.basics import Role, role_of
 from app.motion.samples import Sample
 
 
 def intake() -> Intake:
-    return Intake(role_of, lambda sensor: LiveClock())
+    return Intake(role_of)
 
 
 def sample(sensor: str, device_ms: float, host_ms: float) -> Sample:

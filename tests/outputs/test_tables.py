@@ -37,7 +37,7 @@ def read(path: Path) -> list[dict[str, str]]:
         return list(csv.DictReader(file))
 
 
-def test_the_headers_are_the_contracts(folder: Path) -> None:
+def test_the_headers_are_those_that_scripts_read(folder: Path) -> None:
     assert (folder / "trajectory.csv").read_text().split("\n")[0] == HEADER
     assert (folder / "strides.csv").read_text().split("\n")[0] == STRIDES
 

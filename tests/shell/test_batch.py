@@ -1,4 +1,4 @@
-"""``process``: the same steps as live, told as contract.md says."""
+"""``process``: the same steps as live, told with every key that scripts rely on."""
 
 from __future__ import annotations
 

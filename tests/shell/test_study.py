@@ -1,4 +1,4 @@
-"""Studies from the command line: rows as in the contract, a report, one line for what is wrong."""
+"""Studies from the command line: rows as scripts rely on them, a report, one line for what is wrong."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ CONTRACT = {"study", "item", "printed", "got", "unit", "verdict", "why"}
 VERDICTS = {"reproduced", "close", "not reproduced", "no data"}
 
 
-def test_json_is_one_object_with_rows_as_in_the_contract(
+def test_json_is_one_object_with_the_rows_that_scripts_read(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -23,7 +23,6 @@ MOST_SAMPLES = 512
 #: Numbers stay below this: JavaScript and JSON are exact up to here.
 MOST_SEQ = 1 << 53
 MOST_NS = 1 << 63
-NAME_BYTES = 16
 #: A session, as JSON writes it.
 HEX = re.compile(r"[0-9a-fA-F]{1,16}")
 #: A sensor's name: ``left``, ``right``, ``foot`` or any other.

@@ -32,7 +32,6 @@ from app.motion.samples import GAP_NS, Sample
 
 FASTEST_HZ = 400.0
 SENSORS, QUATERNION, TEMPERATURE = b"/sensors", b"/quaternion", b"/temperature"
-IDENTIFY = b"/identify\0\0\0,\0\0\0"  # flashes its lights
 
 _BUNDLE = b"#bundle\0"
 _LARGEST = 2048
