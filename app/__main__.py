@@ -1,87 +1,49 @@
-"""Shell: the command line: finds the command, runs it, sets exit codes."""
+"""Shell: the program, ``stridescope`` or ``python -m app``: ready for Ctrl-C before anything is imported."""
 
 from __future__ import annotations
 
-import logging
+import io
 import os
+import signal
 import sys
 from collections.abc import Sequence
 
-from app import __version__
-from app.commands import (
-    bench,
-    calibrate,
-    devices,
-    doctor,
-    emulate,
-    export,
-    forward,
-    gestures,
-    info,
-    mover,
-    process,
-    record,
-    recover,
-    study,
-    walk,
-)
-from app.commands.shared import Parser
-from app.motion.basics import InputError
-
-COMMANDS = {
-    "walk": walk,
-    "mover": mover,
-    "record": record,
-    "recover": recover,
-    "info": info,
-    "export": export,
-    "forward": forward,
-    "process": process,
-    "gestures": gestures,
-    "study": study,
-    "emulate": emulate,
-    "devices": devices,
-    "calibrate": calibrate,
-    "doctor": doctor,
-    "bench": bench,
-}
-
-
-def parser() -> Parser:
-    """All commands and their options."""
-    top = Parser(
-        prog="stridescope", description="Walk with inertial sensors on your feet, and watch it live."
-    )
-    top.add_argument("--version", action="version", version=f"stridescope {__version__}")
-    commands = top.add_subparsers(dest="command", metavar="COMMAND", parser_class=Parser)
-    for command in COMMANDS.values():
-        command.add(commands)
-    return top
-
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run a command. Exit code 0: done; 2: the user's input is wrong, said in one line."""
-    level = os.environ.get("STRIDESCOPE_LOG", "WARNING").upper()
-    logging.basicConfig(
-        level=level if level in logging.getLevelNamesMapping() else "WARNING",
-        format="%(levelname)s %(name)s: %(message)s",
-    )
-    argv = list(sys.argv[1:] if arguments is None else arguments)
-    if not argv or (argv[0].startswith("-") and argv[0] not in ("-h", "--help", "--version")):
-        argv.insert(0, "walk")
-    options = parser().parse_args(argv)
-    try:
-        code: int = COMMANDS[options.command].run(options)
-        sys.stdout.flush()
-        return code
-    except InputError as error:
-        print(f"stridescope: {' '.join(str(error).split())}", file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        return 0
-    except BrokenPipeError:  # the reader of our output has gone (a pipe into head); nothing is wrong
-        sys.stdout = open(os.devnull, "w", encoding="utf-8")  # noqa: SIM115  (Python flushes it at exit)
-        return 0
+    """Run the command line (``commands/program.py``); None: as the program itself, whose process this is."""
+    if arguments is None:
+        open_streams()
+        end_by_signal()
+    from app.commands import program  # numpy and the compiler: a second in which Ctrl-C may come
+
+    code = program.run(sys.argv[1:] if arguments is None else arguments)
+    if arguments is None:
+        end_by_signal()
+    return code
+
+
+def end_by_signal() -> None:
+    """Ctrl-C ends the process at once and without a word; what has something to close sets its own handler.
+
+    Python's own exception could come up anywhere, in the compiler too. Where Ctrl-C is ignored it stays so.
+    """
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+
+def open_streams() -> None:
+    """Where the caller closed one of the three, nothing stands in: no file of ours gets its number.
+
+    A letter that the terminal does not have becomes a question mark.
+    """
+    while (number := os.open(os.devnull, os.O_RDWR)) <= 2:
+        os.set_inheritable(number, True)
+    os.close(number)
+    for name, mode in (("stdin", "r"), ("stdout", "w"), ("stderr", "w")):
+        if getattr(sys, name) is None:
+            setattr(sys, name, open(os.devnull, mode, encoding="utf-8"))  # noqa: SIM115  (for good)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="replace")
 
 
 if __name__ == "__main__":

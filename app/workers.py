@@ -6,12 +6,17 @@ costs time only: its tasks are done again.
 
 from __future__ import annotations
 
+import contextlib
 import multiprocessing
 import os
+import signal
+import sys
+import threading
 import time
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from multiprocessing import resource_tracker
 from typing import Any
 
 from app.motion.basics import InputError
@@ -83,10 +88,55 @@ def one_of_each_first(tasks: Sequence[Task]) -> list[int]:
 
 def _pooled(tasks: Sequence[Task], waiting: Sequence[int], jobs: int) -> Iterator[tuple[int, Done]]:
     # spawn, not fork: this process may have threads, and a fork would copy their locks
-    with ProcessPoolExecutor(jobs, multiprocessing.get_context("spawn")) as pool:
-        numbers = {pool.submit(run_task, tasks[number]): number for number in waiting}
+    spawn = multiprocessing.get_context("spawn")
+    with _ended_by_signals(), ProcessPoolExecutor(jobs, spawn, initializer=_end_with_parent) as pool:
+        with _deaf_to_ctrl_c():
+            numbers = {pool.submit(run_task, tasks[number]): number for number in waiting}
         for future in as_completed(numbers):
             yield numbers[future], future.result()
+
+
+@contextlib.contextmanager
+def _deaf_to_ctrl_c() -> Iterator[None]:
+    """Processes begun here never hear Ctrl-C, which a terminal sends to all: only this one."""
+    resource_tracker.ensure_running()  # it would undo this, if it were begun within
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, [signal.SIGINT])
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@contextlib.contextmanager
+def _ended_by_signals() -> Iterator[None]:
+    """Ctrl-C, or a wish that this process end, ends the workers first: nothing of the pool is left."""
+
+    def end(number: int, _: object) -> None:
+        for worker in multiprocessing.active_children():
+            worker.terminate()
+        sys.exit(128 + number)
+
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    before = {number: signal.signal(number, end) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _end_with_parent() -> None:
+    """A worker whose parent has gone, however it ended, has nobody to work for."""
+    parent = multiprocessing.parent_process()
+    assert parent is not None
+
+    def wait() -> None:
+        parent.join()
+        os._exit(1)
+
+    threading.Thread(target=wait, name="parent", daemon=True).start()
 
 
 def _on_cluster(tasks: Sequence[Task], address: str, tell: Tell) -> list[Done]:

@@ -6,6 +6,7 @@ import json
 import math
 import os
 import random
+import signal
 import subprocess
 import sys
 from collections.abc import Callable
@@ -129,6 +130,8 @@ def test_a_bad_profile(run: Run, tmp_path: Path, content: str, named: str) -> No
     [
         (["walk", "--port", "eighty"], "eighty"),
         (["walk", "--memory-mb", "1"], "16"),
+        (["walk", "--declination", "nan"], "--declination"),
+        (["process", "a", "--profile", ""], "profile"),
         (["walk", "--no-open", "--source", "nowhere.csv"], "nowhere.csv"),
         (["walk", "--no-open", "--token-file", "/nonexistent"], "/nonexistent"),
         (["walk", "--no-open", "--token-file", "/dev/null"], "empty"),
@@ -280,6 +283,42 @@ def test_a_home_that_cannot_be_written_and_odd_words_in_the_environment(tmp_path
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
     assert json.loads(done.stdout)["feet"]["foot"]["strides"] == 1
+
+
+@pytest.mark.timeout(400)
+@pytest.mark.parametrize(
+    ("where", "code", "said"),
+    [(">&-", 0, ""), ("2>&- <&-", 0, ""), ("> /dev/full", 2, "cannot be written")],
+)
+def test_nowhere_to_write_to_is_no_traceback(tmp_path: Path, where: str, code: int, said: str) -> None:
+    (tmp_path / "walk.csv").write_text(csv_of(still_rows(1)))
+    script = f"{sys.executable} -m app info {tmp_path}/walk.csv {where}"
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(
+        ["bash", "-c", script], cwd=ROOT, env=environment, capture_output=True, text=True, timeout=390,
+        check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stderr.count("\n")) == (code, int(bool(said)))
+    assert said in done.stderr
+
+
+def test_ctrl_c_while_the_program_is_imported_says_nothing() -> None:
+    """It comes at the worst moment: in the middle of an import."""
+    script = """
+import importlib.abc, os, signal, sys
+class Finder(importlib.abc.MetaPathFinder):
+    def find_spec(self, name, path, target=None):
+        if name == "app.commands.info":
+            os.kill(os.getpid(), signal.SIGINT)
+sys.meta_path.insert(0, Finder())
+from app.__main__ import main
+main()
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", script, "--version"], cwd=ROOT, capture_output=True, text=True, timeout=60,
+        check=False,
+    )  # fmt: skip
+    assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
 
 
 @pytest.mark.timeout(400)

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import numpy as np
@@ -80,3 +83,38 @@ def test_one_task_of_each_function_comes_first_and_none_is_left_out() -> None:
     assert sorted(order) == list(range(len(tasks)))
     assert [tasks[number].run for number in order[:3]] == [draw, fail, count]
     assert order[3:] == sorted(order[3:])
+
+
+def mark_and_sleep(marker: str) -> None:
+    Path(marker).write_text("")
+    time.sleep(600.0)
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGKILL, -9)]
+)
+def test_the_workers_end_with_the_program(tmp_path: Path, number: signal.Signals, code: int) -> None:
+    """A terminal sends Ctrl-C to the workers as well. None outlives the pipe that all of them have open."""
+    script = (
+        "from app.workers import run_all, Task; from test_workers import mark_and_sleep\n"
+        f"if __name__ == '__main__':\n"
+        f"    tasks = [Task(mark_and_sleep, ({str(tmp_path)!r} + f'/{{k}}',)) for k in range(2)]\n"
+        "    run_all(tasks, 2, None, lambda *_: None)\n"
+    )
+    root = Path(__file__).parent
+    environment = {**os.environ, "PYTHONPATH": f"{root.parent}:{root}"}
+    (tmp_path / "program.py").write_text(script)
+    program = subprocess.Popen(
+        [sys.executable, str(tmp_path / "program.py")], env=environment, stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE, text=True, start_new_session=True,
+    )  # fmt: skip
+    while not ((tmp_path / "0").exists() and (tmp_path / "1").exists()):
+        assert program.poll() is None
+        time.sleep(0.05)
+    if number == signal.SIGINT:
+        os.killpg(program.pid, number)
+    else:
+        program.send_signal(number)
+    _, said = program.communicate(timeout=300)
+    assert program.returncode == code
+    assert "Traceback" not in said

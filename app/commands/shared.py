@@ -53,7 +53,7 @@ def add_json(command: argparse.ArgumentParser) -> None:
 
 def settings_of(options: argparse.Namespace) -> Settings:
     """The profile, with each ``--set`` on top."""
-    settings = profiles.load(options.profile or DEFAULT_PROFILE)
+    settings = profiles.load(DEFAULT_PROFILE if options.profile is None else options.profile)
     changes = {}
     for text in options.set:
         key, equals, value = text.partition("=")

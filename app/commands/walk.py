@@ -44,6 +44,8 @@ def run(options: argparse.Namespace) -> int:
 
     if options.memory_mb < 16:
         raise InputError(f"--memory-mb {options.memory_mb}: expected 16 or more")
+    if not abs(options.declination) <= 180.0:
+        raise InputError(f"--declination {options.declination:g}: expected degrees east, −180 to 180")
     viewer.walk(
         viewer.Options(
             source=options.source if options.source is not None else str(DEMO),

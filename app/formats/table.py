@@ -51,9 +51,9 @@ def to_text(name: str, data: bytes) -> bytes:
 
 
 def read_head(data: bytes) -> Head:
-    """The comments and rows among the first 64 kB of text."""
+    """The comments and rows among the first 64 kB of text, and 64 kB more behind the first comments."""
     comments, rows, ends = [], [], []
-    lines = data[:_HEAD_BYTES].split(b"\n")
+    lines = data[: _first_row(data) + _HEAD_BYTES].split(b"\n")
     separator = _separator(lines)
     end = 0
     for line in lines:
@@ -65,6 +65,14 @@ def read_head(data: bytes) -> Head:
             rows.append(tuple(cell.strip().strip('"') for cell in text.split(separator)))
             ends.append(min(end, len(data)))
     return Head(tuple(comments), tuple(rows), tuple(ends), separator)
+
+
+def _first_row(data: bytes) -> int:
+    """Where the first line begins that is no comment."""
+    start = 0
+    while data.startswith(b"#", start):
+        start = data.find(b"\n", start) + 1 or len(data)
+    return start
 
 
 def _decode(line: bytes) -> str:

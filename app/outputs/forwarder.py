@@ -87,7 +87,7 @@ def sender_to(address: str, session: int, links: Links, tell: Tell) -> Sender:
         port = parts.port
     except ValueError:
         parts, port = urlsplit(""), None
-    if parts.scheme not in ("ws", "wss", "udp") or not parts.hostname or port is None:
+    if parts.scheme not in ("ws", "wss", "udp") or not parts.hostname or not port:
         raise InputError(f"--to {address}: expected ws://HOST:PORT or udp://HOST:PORT")
     if parts.scheme == "udp":
         return UdpSender(parts.hostname, port, session, _repeats(address, parts.query))
@@ -97,7 +97,7 @@ def sender_to(address: str, session: int, links: Links, tell: Tell) -> Sender:
 def _repeats(address: str, query: str) -> int:
     options = parse_qs(query, keep_blank_values=True)
     text = options.pop("repeat", ["0"])[0]
-    if options or not text.isascii() or not text.isdigit() or int(text[:3]) > 8:
+    if options or not text.isascii() or not text.isdigit() or len(text) > 1 or int(text) > 8:
         raise InputError(f"--to {address}: expected udp://HOST:PORT or udp://HOST:PORT?repeat=N, N 0 to 8")
     return int(text)
 

@@ -110,9 +110,22 @@ def open_feeds(options: Options) -> list[Feed]:
     if options.left or options.right:
         if options.source or not (options.left and options.right):
             raise InputError("expected --source alone, or both --left and --right")
-        return [Feed(open_source(spec, changes=False), side) for side, spec in
+        return [Feed(with_sensors(open_source(spec, changes=False), side), side) for side, spec in
                 (("left", options.left), ("right", options.right))]  # fmt: skip
-    return [Feed(open_source(options.source or DEFAULT_SOURCE, changes=False), None)]
+    return [Feed(with_sensors(open_source(options.source or DEFAULT_SOURCE, changes=False), None), None)]
+
+
+def with_sensors(source: Source, side: str | None) -> Source:
+    """The source, if it is live or a recording of what is wanted: both feet, or one for a side."""
+    held = set(source.info.sensors.values())
+    if source.info.duration_s is None:
+        return source
+    came = f"{source.info.name}: {', '.join(source.info.sensors) or 'no sensor'}"
+    if side is not None and len(source.info.sensors) != 1:
+        raise InputError(f"--{side} {came}: expected one sensor, tell which: ?foot={side}")
+    if side is None and not {Role.LEFT, Role.RIGHT} <= held:
+        raise InputError(f"--source {came}: expected the sensors left and right")
+    return source
 
 
 def addresses(operate: str, watch: str, options: Options) -> list[str]:

@@ -27,6 +27,7 @@ def columns(data: bytes) -> tuple[np.ndarray, dict[str, int]]:
         b"\xef\xbb\xbfa,b\n1,2.5\n3,4\n",
         "a,b\n1,2.5\n3,4\n".encode("utf-16"),
         b"# note\n\n a , b \n1, 2.5\n# more\n\n3,4\n\n",
+        b"# a long note\n" * 10_000 + b"a,b\n1,2.5\n# more\n3,4\n",
         b"a;b\n1;2,5\n3;4\n",
         b"a\tb\n1\t2.5\n3\t4.0\n",
         b'"a","b"\n"1","2.5"\n"3","4"\n',

@@ -183,6 +183,8 @@ def test_datagrams_arrive_and_a_lost_one_is_made_good_by_the_next() -> None:
         "ws://x",
         "http://a:1",
         "udp://127.0.0.1",
+        "udp://127.0.0.1:0",
+        "udp://127.0.0.1:1?repeat=0008000",
         "udp://127.0.0.1:1?repeat=9",
         "udp://127.0.0.1:1?x=1",
         "ws://[",

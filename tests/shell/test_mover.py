@@ -108,6 +108,8 @@ def test_arrow_keys_in_a_real_browser_walk_the_town_to_a_target(browser: Browser
         (["--source", "sim:gestures?cadence=99"], "cadence"),
         (["--osc", "nowhere"], "--osc"),
         (["--source", "no-such-file.csv"], "no such file"),
+        (["--source", "sim:walk?feet=1&strides=2"], "expected the sensors left and right"),
+        (["--left", "sim:walk?feet=2&strides=2", "--right", "ws:0"], "--left"),
     ],
 )
 def test_mistakes_are_one_line(arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]) -> None:
