@@ -7,7 +7,7 @@ import scipy.io
 
 from app.blocks import Blocks
 from app.estimator.tracker import Tracker
-from app.estimator.trust import CHI2_95
+from app.estimator.trust import CHI2_95, unknown_m2
 from app.motion.basics import Floats
 from app.motion.samples import SAMPLE_WIDTH
 from app.settings import Settings
@@ -42,8 +42,7 @@ def looks(name: str, matrix: Floats, trial: dict[str, Floats], settings: Setting
         tracker.advance(table)
         found.append(up(tracker.rows.table(end, end + 1)[:, :3])[0, :2])
         flip = np.array([[1.0, -1.0], [-1.0, 1.0]])  # east to west
-        state = tracker.state[0]
-        doubts.append(state["P"][:2, :2] * flip + float(state["unknown_m2"]) * np.eye(2))
+        doubts.append(tracker.state["P"][0, :2, :2] * flip + unknown_m2(tracker.state) * np.eye(2))
     e, t = np.array(found), truth[at] - truth[0]
     yaw = np.arctan2(np.sum(e[:, 0] * t[:, 1] - e[:, 1] * t[:, 0]), np.sum(e * t))
     c, s = np.cos(yaw), np.sin(yaw)
