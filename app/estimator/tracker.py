@@ -62,7 +62,8 @@ class Tracker:
         self.steps: list[Step] = []  # the same strides, as the other foot is told of them
         self.distance_m = self._base.distance_m
         self.segments: list[int] = []  # rows where a segment begins, but for the first
-        self._gap_s = 0.0  # without samples since the last stride
+        self._gaps_s: list[float] = []  # without samples before each of them
+        self._gap_s = 0.0  # … since the last stride
         self._watch = CompassWatch()
         self.checkpoints: dict[int, Checkpoint] = {}  # before each block's first row
         self._events = np.zeros((self.method.events, EVENT_WIDTH))
@@ -142,7 +143,8 @@ class Tracker:
                 self._look_at_field(samples, int(event[Event.CONTACT_ROW]), last)
         if happened & s.SEGMENT:
             self.segments.append(last - 1)
-            self._gap_s += self._since_before(samples, last - 1)
+            self._gaps_s.append(self._since_before(samples, last - 1))
+            self._gap_s += self._gaps_s[-1]
             self._contact = None
             self._watch.forget()
 
@@ -177,14 +179,18 @@ class Tracker:
         self._contact, self.distance_m = base.contact, base.distance_m
         self.strides = [stride for stride in self.strides if stride.number <= base.strides]
         del self.steps[len(self.strides) :]
-        breaks = [row for row in self.segments if row >= self.rows.start]
+        both = zip(self.segments, self._gaps_s, strict=True)
+        breaks = [(row, gap_s) for row, gap_s in both if row >= self.rows.start]
+        self._gap_s = 0.0
         for event in events:
-            while breaks and breaks[0] <= event[Event.LIFT_ROW]:
-                self._contact, _ = None, breaks.pop(0)
+            while breaks and breaks[0][0] <= event[Event.LIFT_ROW]:
+                self._contact = None
+                self._gap_s += breaks.pop(0)[1]
             for axis in range(3):
                 event[Event.START + axis] = self._row(max(int(event[Event.LIFT_ROW]), self.rows.start))[axis]
                 event[Event.END + axis] = self._row(int(event[Event.CONTACT_ROW]))[axis]
             self._add_stride(event)
+        self._gap_s += sum(gap_s for _, gap_s in breaks)
 
     def stand(self) -> None:
         """The last footprint is the last stride's, which somebody else has moved."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
 from app.blocks import BLOCK
 from app.estimator.smoother import finish, smooth
@@ -99,3 +100,17 @@ def test_the_first_stride_that_is_left_begins_at_the_footprint_before_it() -> No
     first = next(stride for stride in tracker.strides if stride.number == base.strides + 1)
     assert first.start_s == base.contact.t_s
     assert first.stance_s > 0.0
+
+
+def test_strides_still_know_the_gaps_before_them() -> None:
+    """A toe direction is sought anew behind a gap; two feet may be anywhere after one."""
+    whole = foot("strides=30&rate_hz=200")
+    samples = without(without(whole, 6.0, 8.0), 20.0, 21.0)
+    before, after = tracked(samples), smoothed(samples)
+    gaps_s = {round(step.end_s, 1): round(step.gap_s, 1) for step in before.steps if step.gap_s}
+    assert sorted(gaps_s.values()) == [1.0, 2.0]
+    assert {round(step.end_s, 1): round(step.gap_s, 1) for step in after.steps if step.gap_s} == gaps_s
+    cut = without(whole, 6.0, 8.0)
+    end = int(np.searchsorted(cut.matrix[:, 0], 8.6e9))  # it ends before the next stride
+    ended = Samples(cut.sensor, cut.role, 0, cut.matrix[:end], cut.saturation[:end])
+    assert smoothed(ended)._gap_s == tracked(ended)._gap_s == pytest.approx(2.005)
