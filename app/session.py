@@ -115,7 +115,10 @@ class Session:
         return True
 
     def name_feet(self, roles: Mapping[str, Role]) -> None:
-        """Which sensor is which foot, as somebody found out meanwhile: for display only."""
+        """Which sensor is which foot, as somebody found out meanwhile: shown so, and linked if they are two.
+
+        It is no order: what comes of it does not depend on when it was found out.
+        """
         for sensor, role in roles.items():
             if sensor in self.stores:
                 self.stores[sensor].role = role

@@ -111,13 +111,14 @@ def _kept(contents: Contents) -> Kept:
         found = topics.get(topic)
         return list(zip(found.place.tolist(), found.data, strict=True)) if found else []
 
-    about = [journal.from_json(data) for _, data in said(keeping.RECORDING)]
+    told = [journal.from_json(data) for _, data in said(keeping.RECORDING)]
+    about = {key: value for one in told for key, value in one.items()}  # what was learnt later, too
     starts = ((place, journal.read_start(data)) for place, data in said(keeping.START))
     orders = ((place, journal.read_order(data)) for place, data in said(keeping.ORDERS))
     texts = ((place, journal.from_json(data).get("text")) for place, data in said(keeping.MARKERS))
     return Kept(
-        about={key: value for told in about for key, value in told.items()},  # what was learnt later, too
-        readings=_all_readings(contents),
+        about=about,
+        readings=_all_readings(contents, _roles(about)),
         starts=tuple((place, start) for place, start in starts if start is not None),
         orders=tuple((place, *order) for place, order in orders if order is not None),
         markers=tuple((place, text) for place, text in texts if isinstance(text, str)),
@@ -155,7 +156,14 @@ def _told(contents: Contents, kind: str) -> tuple[_Told, ...]:
 # --- samples -------------------------------------------------------------------------------------
 
 
-def _all_readings(contents: Contents) -> tuple[Readings, ...]:
+def _roles(about: dict[str, Any]) -> dict[str, Role]:
+    """Which sensor is which foot, as it was known at the end: a sensor may be named in mid-walk."""
+    said = about.get("sensors")
+    pairs = said.items() if isinstance(said, dict) else ()
+    return {sensor: Role(role) for sensor, role in pairs if isinstance(role, str) and role in set(Role)}
+
+
+def _all_readings(contents: Contents, told: dict[str, Role]) -> tuple[Readings, ...]:
     sensors: dict[str, dict[str, Gathered]] = {}
     roles: dict[str, Role] = {}
     clocks: dict[str, str] = {}
@@ -165,7 +173,8 @@ def _all_readings(contents: Contents) -> tuple[Readings, ...]:
             sensor = metadata["sensor"]
             sensors.setdefault(sensor, {})[metadata["kind"]] = contents.gathered[number]
             role = metadata.get("role", "")
-            roles[sensor] = Role(role) if role in set(Role) else role_of(sensor)
+            known = Role(role) if role in set(Role) else role_of(sensor)
+            roles[sensor] = told.get(sensor, known)
             clocks[sensor] = metadata["clock_ns"]
     return tuple(
         _readings(sensor, roles[sensor], int(clocks[sensor]), kinds)

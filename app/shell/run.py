@@ -297,7 +297,7 @@ class Viewer:
             try:
                 snapshot, counters = self.walk.session.snapshot(), self.walk.source.counters
                 snapshot = self._seen = self._damage.seen(snapshot, counters, time.monotonic())
-                self._taping.walk(self.walk.source.info, snapshot.main.feet)
+                self._taping.walk(self.walk.info, snapshot.main.feet)
                 self._shown = self.walk.before.look(snapshot, self._status_now())
                 self.walk.session.name_feet(self.walk.before.names)
                 scene.draw(snapshot, self._shown)

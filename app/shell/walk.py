@@ -12,7 +12,7 @@ from app.motion.basics import Role, role_of
 from app.motion.commands import Order, RestartHere
 from app.motion.recording import Landing, Stretch
 from app.motion.samples import Sample
-from app.motion.source import Link
+from app.motion.source import Link, SourceInfo
 from app.motion.status import Status
 from app.session import Session
 from app.settings import Settings
@@ -38,6 +38,12 @@ class Walk:
         self.session = Session(
             source.settings or settings, self._role, info.truth, budget_bytes, self._clock, epoch, info.rod_m
         )
+
+    @property
+    def info(self) -> SourceInfo:
+        """What the source says of itself, and which sensor is which foot, as a tap told."""
+        info = self.source.info
+        return replace(info, sensors={**info.sensors, **self.before.names})
 
     def close(self) -> None:
         """Let go of the source, and keep what the walk taught of its sensors."""

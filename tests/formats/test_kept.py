@@ -13,12 +13,13 @@ from mcap.reader import make_reader
 
 from app.formats import kept, mcap
 from app.formats.journal import Start
+from app.formats.keeping import Keeper
 from app.formats.reading import read
 from app.motion.basics import InputError, Role
 from app.motion.commands import Order, RestartHere, SetCandidate
 from app.motion.samples import Sample
 from app.settings import Settings
-from tests.formats.walks import keeper, random_samples, write
+from tests.formats.walks import CLOCK_NS, keeper, random_samples, write
 
 numbers = st.floats(width=64)
 vectors = st.tuples(numbers, numbers, numbers)
@@ -184,3 +185,14 @@ def test_what_a_recording_says_itself_cannot_be_told(option: str) -> None:
     told = parse_options({option: {"rate": "100", "axes": "x,y,z", "device": "gx1"}[option]})
     with pytest.raises(InputError, match=option):
         read("x.mcap", write(random_samples(10)), told)
+
+
+def test_a_foot_that_was_named_in_mid_walk_has_its_name_from_the_start() -> None:
+    made = Keeper({"version": "test", "sensors": {}}, {}, CLOCK_NS)
+    data = made.begin(0)
+    for i, sample in enumerate(random_samples(40)):
+        made.sample(sample._replace(sensor={"left": "a", "right": "b"}[sample.sensor]))
+        if i == 20:
+            made.learnt(0, {"sensors": {"a": "right", "b": "left", "c": "nonsense", "d": 3}})
+    recording = read("walk.mcap", data + made.end())
+    assert {sensor.sensor: sensor.role for sensor in recording.sensors} == {"a": Role.RIGHT, "b": Role.LEFT}
