@@ -40,7 +40,7 @@ def run(options: argparse.Namespace) -> int:
         files = [film.share(options.file, settings_of(options), wish.path(options.file))]
     else:
         done = batch.process(options.file, settings_of(options))
-        files = exports.walk(options.file, wish, done.recording, done.trackers)
+        files = exports.walk(options.file, wish, done.recording, batch.foot_tables(done))
     for path in files:
         print(f"wrote {path}")
     return 0

@@ -79,18 +79,19 @@ def _spec(head: Head) -> str | None:
 def encode(recording: Recording) -> bytes:
     """The recording as plain CSV, rows in time order; the SPEC that made it in the first comment."""
     lines = [f"# {_SPEC} {' '.join(recording.spec.split())}"] if recording.spec else []
-    rows = [row for samples in recording.sensors for row in _rows(samples)]
+    begin_ns = min(recording.sensors, key=recording.offset_ns).device_ns if recording.sensors else 0
+    rows = [row for s in recording.sensors for row in _rows(s, begin_ns + recording.offset_ns(s))]
     rows.sort(key=lambda row: row[0])
     return "\n".join([*lines, HEADER, *(line for _, line in rows), ""]).encode()
 
 
-def _rows(samples: Samples) -> Iterator[tuple[int, str]]:
-    """Stamp and line of every sample."""
+def _rows(samples: Samples, begin_ns: int) -> Iterator[tuple[int, str]]:
+    """Stamp and line of every sample; the first came at ``begin_ns``."""
     elapsed = samples.matrix[:, 0].astype(np.int64).tolist()
     readings = samples.matrix[:, 1:7].tolist()
     fields = samples.matrix[:, 7:10].tolist()
     for elapsed_ns, reading, field in zip(elapsed, readings, fields, strict=True):
-        stamp_ns = samples.device_ns + elapsed_ns
+        stamp_ns = begin_ns + elapsed_ns
         cells = [_seconds(stamp_ns), samples.sensor, *map(repr, reading), *map(_gauss, field)]
         yield stamp_ns, ",".join(cells)
 

@@ -34,12 +34,17 @@ class Recording:
 
     @property
     def duration_s(self) -> float:
-        """Seconds from the first stamp of any sensor to the last of any."""
-        if not self.sensors:
-            return 0.0
-        start = min(s.device_ns for s in self.sensors)
-        end = max(s.device_ns + int(s.matrix[-1, 0]) for s in self.sensors if len(s))
-        return (end - start) * 1e-9
+        """Seconds from the first sample of any sensor to the last of any."""
+        ends = (self.offset_ns(s) + int(s.matrix[-1, 0]) for s in self.sensors if len(s))
+        return max(ends, default=0) * 1e-9
+
+    def offset_ns(self, samples: Samples) -> int:
+        """How long after the recording's first sample this sensor's came, on the clock that all share."""
+        return self._began_ns(samples) - min(map(self._began_ns, self.sensors))
+
+    def _began_ns(self, samples: Samples) -> int:
+        line = self.clocks.get(samples.sensor)
+        return samples.device_ns if line is None else line.host(samples.device_ns)
 
 
 @dataclass(frozen=True)

@@ -227,25 +227,26 @@ def foot_summary(tracker: Tracker) -> dict[str, object]:
 
 def write(done: Processed, folder: Path) -> list[Path]:
     """Write trajectory and strides into a folder."""
-    first_ns = min((sensor.device_ns for sensor in done.recording.sensors), default=0)
-    return tables.write(folder, [_table(sensor, done, first_ns) for sensor in done.recording.sensors])
+    return tables.write(folder, foot_tables(done))
 
 
-def _table(sensor: Samples, done: Processed, first_ns: int) -> tables.FootTable:
-    tracker = done.trackers[sensor.sensor]
-    rows = tracker.rows.table(tracker.rows.start, tracker.rows.end)
-    offset_s = (sensor.device_ns - first_ns) * 1e-9
-    t_s: Floats = ((sensor.device_ns - first_ns) + sensor.matrix[:, 0]) * 1e-9
-    return tables.FootTable(sensor.sensor, t_s, rows, tracker.strides, offset_s)
+def foot_tables(done: Processed) -> list[tables.FootTable]:
+    """Every foot's result, its times from the recording's first sample."""
+    found = []
+    for sensor in done.recording.sensors:
+        tracker, offset_ns = done.trackers[sensor.sensor], done.recording.offset_ns(sensor)
+        rows = tracker.rows.table(tracker.rows.start, tracker.rows.end)
+        t_s: Floats = (offset_ns + sensor.matrix[:, 0]) * 1e-9
+        found.append(tables.FootTable(sensor.sensor, t_s, rows, tracker.strides, offset_ns * 1e-9))
+    return found
 
 
 class Decoded(NamedTuple):
-    """A recording of two feet and what they asked for: the changes of motion or speed."""
+    """A recording of two feet and what they asked for: the changes of motion or speed, since it began."""
 
     recording: Recording
     decoder: str
     decisions: list[Decision]
-    start_ns: int
 
 
 def decode_gestures(spec: str, name: str) -> Decoded:
@@ -258,11 +259,12 @@ def decode_gestures(spec: str, name: str) -> Decoded:
             f"{recording.name}: {came}: expected the sensors left and right, for gestures take two feet"
         )
     both = {role: feet[role] for role in (Role.LEFT, Role.RIGHT)}
+    both = {role: replace(foot, device_ns=recording.offset_ns(foot)) for role, foot in both.items()}
     if name == "papers":  # the only one that looks at the heading
         found = decode(PapersDecoder(), both, {role: _orientation(samples) for role, samples in both.items()})
     else:
         found = decode(DefaultDecoder(), both)
-    return Decoded(recording, name, changes(found), min(samples.device_ns for samples in both.values()))
+    return Decoded(recording, name, changes(found))
 
 
 def _orientation(samples: Samples) -> Floats:
@@ -280,7 +282,7 @@ def gestures_summary(done: Decoded) -> dict[str, object]:
         "decoder": done.decoder,
         "decisions": [
             {
-                "t_s": (decision.t_ns - done.start_ns) * 1e-9,
+                "t_s": decision.t_ns * 1e-9,
                 "motion_id": int(decision.motion),
                 "motion": decision.motion.name.lower(),
                 "speed_mps": decision.speed_mps,
@@ -302,7 +304,7 @@ def gestures_lines(done: Decoded) -> list[str]:
     for d in done.decisions:
         doubt = "" if d.certain else ", not yet certain"
         what = f"{d.motion.name.lower()} {d.speed_mps:.2f} m/s{doubt}: {d.reason}"
-        text.append(f"  {(d.t_ns - done.start_ns) * 1e-9:8.2f} s  {what}")
+        text.append(f"  {d.t_ns * 1e-9:8.2f} s  {what}")
     return text
 
 

@@ -3,17 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from app.estimator.tracker import Tracker
 from app.formats import geo, plain
 from app.formats.sto import sto
-from app.motion.basics import Floats, InputError
+from app.motion.basics import InputError
 from app.motion.estimate import ATTITUDE, POSITION
 from app.motion.recording import Recording
-from app.motion.samples import Samples
 from app.outputs import tables
 from app.outputs.files import write_new
 from app.sources.opening import open_recording
@@ -55,11 +53,9 @@ def samples(spec: str, wish: Wish) -> list[Path]:
     return _write({wish.path(spec): plain.encode(recording)})
 
 
-def walk(spec: str, wish: Wish, recording: Recording, trackers: Mapping[str, Tracker]) -> list[Path]:
+def walk(spec: str, wish: Wish, recording: Recording, feet: Sequence[tables.FootTable]) -> list[Path]:
     """The estimated walk; a file that exists is ``InputError``."""
-    place = wish.place()
-    feet = [_table(samples, trackers[samples.sensor], recording) for samples in recording.sensors]
-    path = wish.path(spec)
+    place, path = wish.place(), wish.path(spec)
     if wish.kind == "strides":
         return _write({path: _lines([tables.STRIDES, *tables.stride_lines(feet)])})
     if wish.kind == "tum":
@@ -75,13 +71,6 @@ def walk(spec: str, wish: Wish, recording: Recording, trackers: Mapping[str, Tra
         for foot, step in zip(feet, every, strict=True)
     ]
     return _write({path: MAPS[wish.kind](recording.name, paths)})
-
-
-def _table(samples: Samples, tracker: Tracker, recording: Recording) -> tables.FootTable:
-    rows = tracker.rows.table(tracker.rows.start, tracker.rows.end)
-    offset_ns = samples.device_ns - min(other.device_ns for other in recording.sensors)
-    t_s: Floats = (offset_ns + samples.matrix[:, 0]) * 1e-9
-    return tables.FootTable(samples.sensor, t_s, rows, tracker.strides, offset_ns * 1e-9)
 
 
 def _of_foot(path: Path, foot: str, feet: int) -> Path:

@@ -11,7 +11,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from mcap.reader import make_reader
 
-from app.formats import kept, mcap
+from app.formats import kept, mcap, plain
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
 from app.formats.reading import read
@@ -196,3 +196,26 @@ def test_a_foot_that_was_named_in_mid_walk_has_its_name_from_the_start() -> None
             made.learnt(0, {"sensors": {"a": "right", "b": "left", "c": "nonsense", "d": 3}})
     recording = read("walk.mcap", data + made.end())
     assert {sensor.sensor: sensor.role for sensor in recording.sensors} == {"a": Role.RIGHT, "b": Role.LEFT}
+
+
+def two_clocks(apart_ns: int) -> bytes:
+    """Two feet, the right one's samples three seconds later than the left one's, each by its own clock."""
+    made = keeper()
+    data = made.begin(0)
+    for i in range(600):
+        ns = 10_000_000 * i
+        for sensor, began_ns, off_ns in (("left", 0, 0), ("right", 3_000_000_000, apart_ns)):
+            if ns >= began_ns:
+                made.sample(Sample(sensor, i, ns + off_ns, ns + 7, (0.0, 0.0, -9.8), (0.0, 0.0, 0.0)))
+    return data + made.end()
+
+
+@pytest.mark.parametrize("apart_ns", [0, 10**15, -(10**12)])
+def test_sensors_with_clocks_of_their_own_share_the_recordings_time(apart_ns: int) -> None:
+    recording = read("walk.mcap", two_clocks(apart_ns))
+    left, right = recording.sensors
+    assert (recording.offset_ns(left), recording.offset_ns(right)) == (0, 3_000_000_000)
+    assert recording.duration_s == pytest.approx(5.99)
+    again = read("walk.csv", plain.encode(recording))
+    assert [again.offset_ns(sensor) for sensor in again.sensors] == [0, 3_000_000_000]
+    assert again.duration_s == pytest.approx(5.99)

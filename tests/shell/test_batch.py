@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import json
 import math
+from dataclasses import replace
 
 import pytest
 
+from app.motion.samples import ClockLine
 from app.session import Session
 from app.settings import BUILT_IN, Settings
 from app.shell import batch
+from app.simulate.gestures import make_gestures
 from tests.estimator.walks import PAPERS, estimate, foot, one_by_one, rows_of, walk
 from tests.sessions import fed, main_rows
 
@@ -76,3 +79,17 @@ def test_a_profile_for_hindsight_under_the_papers_estimator_is_the_papers_estima
     assert not asked.linked
     for sensor, tracker in plain.trackers.items():
         assert rows_of(asked.trackers[sensor]).tobytes() == rows_of(tracker).tobytes()
+
+
+def test_times_are_the_recordings_whatever_the_sensors_clocks_show(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Two sensors have been switched on at different times: their own clocks have nothing in common."""
+    made = make_gestures({"script": "none:2,forward:4"}).recording
+    apart = tuple(replace(s, device_ns=k * 10**15) for k, s in enumerate(made.sensors))
+    lines = {s.sensor: ClockLine(s.device_ns, 5_000_000_000) for s in apart}
+    told = []
+    for recording in (made, replace(made, sensors=apart, clocks=lines)):
+        monkeypatch.setattr(batch, "open_recording", lambda spec, found=recording: (found, None))
+        feet = batch.foot_tables(batch.process("walk", PAPERS))
+        asked = batch.gestures_summary(batch.decode_gestures("walk", "default"))
+        told.append(([foot.t_s.tolist() for foot in feet], asked))
+    assert told[0] == told[1]
