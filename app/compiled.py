@@ -95,6 +95,7 @@ os.environ["NUMBA_CACHE_DIR"] = str(choose_cache_folder(KERNELS))
 
 import numba  # noqa: E402  (the folder has to be known first)
 from llvmlite.binding import ffi as llvm  # noqa: E402
+from numba.core import caching  # noqa: E402
 from numba.extending import register_jitable  # noqa: E402
 
 # Left out while compiling, a tenth of it: a record's type spelled out in full at every pass, and numba's
@@ -102,6 +103,29 @@ from numba.extending import register_jitable  # noqa: E402
 numba.types.Record.__repr__ = numba.types.Type.__repr__  # type: ignore[method-assign]
 with contextlib.suppress(AttributeError):
     llvm.lib._lock._cblist.clear()
+
+
+class Shelf(caching.IndexDataCacheFile):  # type: ignore[misc]
+    """A kernel's files. What a power cut spoilt is compiled again and replaced; a full disk keeps none."""
+
+    def _load_index(self) -> dict[Any, str]:
+        with contextlib.suppress(Exception):  # a torn pickle raises anything
+            return dict(super()._load_index())
+        return {}
+
+    def load(self, key: object) -> object:
+        """What was kept, or None."""
+        with contextlib.suppress(Exception):
+            return super().load(key)
+        return None
+
+    def save(self, key: object, data: object) -> None:
+        """Keep it, where there is room."""
+        with contextlib.suppress(OSError):
+            super().save(key, data)
+
+
+caching.IndexDataCacheFile = Shelf
 
 #: No kernel is called from C; numba's types do not know the option.
 _OPTIONS: Any = {"no_cfunc_wrapper": True}

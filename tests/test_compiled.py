@@ -83,16 +83,42 @@ def test_what_other_versions_left_long_ago_is_removed(
     assert used.is_dir(), "a start is a use"
 
 
-def run_a_kernel(home: Path, temporary: Path) -> tuple[Path, int]:
+def run_a_kernel(home: Path, temporary: Path, script: str = RUN_A_KERNEL) -> tuple[Path, int]:
     """A kernel run in a process of its own: its cache folder and how many kernels lay in it."""
     temporary.mkdir(exist_ok=True)
     kept = {k: v for k, v in os.environ.items() if k not in {"XDG_CACHE_HOME", "NUMBA_CACHE_DIR"}}
     environment = kept | {"HOME": str(home), "TMPDIR": str(temporary)}
-    command = [sys.executable, "-c", RUN_A_KERNEL]
+    command = [sys.executable, "-c", script]
     ran = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=100, check=False)
     assert ran.returncode == 0, ran.stderr
     folder, kernels = ran.stdout.split("\n")[:2]
     return Path(folder), int(kernels)
+
+
+def run_among_damaged(home: Path, temporary: Path, pattern: str) -> list[int]:
+    """Files' lengths after a kernel ran twice, between the runs those of one kind were cut short."""
+    folder, _ = run_a_kernel(home, temporary)
+    for path in folder.rglob(pattern):
+        path.write_bytes(path.read_bytes()[:50])
+    run_a_kernel(home, temporary)
+    return [path.stat().st_size for path in folder.rglob(pattern)]
+
+
+@pytest.mark.parametrize("pattern", ["*.nbi", "*.nbc"])
+def test_kernels_that_a_power_cut_spoilt_are_made_anew(tmp_path: Path, pattern: str) -> None:
+    (tmp_path / "home").mkdir()
+    sizes = run_among_damaged(tmp_path / "home", tmp_path / "tmp", pattern)
+    assert sizes
+    assert min(sizes) > 50
+
+
+@pytest.mark.skipif(sys.platform == "darwin", reason="a full folder by a limit on files' sizes: Linux")
+def test_a_full_disk_keeps_no_kernels(tmp_path: Path) -> None:
+    (tmp_path / "home").mkdir()
+    limited = "import resource; "
+    limited += "resource.setrlimit(resource.RLIMIT_FSIZE, (100, 100))\n"
+    _, kernels = run_a_kernel(tmp_path / "home", tmp_path / "tmp", limited + RUN_A_KERNEL)
+    assert kernels == 0
 
 
 def test_kernels_are_kept_in_the_users_cache_folder(tmp_path: Path) -> None:

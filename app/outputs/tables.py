@@ -71,7 +71,12 @@ def tum_lines(foot: FootTable) -> Iterable[str]:
 
 
 def _write(path: Path, header: str | None, lines: Iterable[str]) -> None:
-    with path.open("w", encoding="utf-8", newline="\n") as file:
-        if header is not None:
-            file.write(header + "\n")
-        file.writelines(line + "\n" for line in lines)
+    file = path.open("w", encoding="utf-8", newline="\n")
+    try:
+        with file:
+            if header is not None:
+                file.write(header + "\n")
+            file.writelines(line + "\n" for line in lines)
+    except OSError:
+        path.unlink()  # half of a table looks like a whole one
+        raise

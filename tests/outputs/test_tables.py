@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import math
+import resource
 from pathlib import Path
 
 import numpy as np
@@ -51,6 +52,19 @@ def test_one_row_per_sample_and_every_number_to_the_bit(folder: Path, side: str,
     assert values.tobytes() == np.ascontiguousarray(rows[:, :10]).tobytes()
     assert [r["phase"] for r in found] == ["swing" if p else "stance" for p in rows[:, 10]]
     assert np.allclose([float(r["t_s"]) for r in found], samples.matrix[:, 0] * 1e-9, rtol=0, atol=1e-9)
+
+
+def test_a_disk_that_gets_full_leaves_no_half_table(tmp_path: Path) -> None:
+    done = batch.process("sim:walk?strides=20", Settings())
+    (tmp_path / "strides.csv").write_text("kept")
+    soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20_000, hard))  # Python ignores the signal that comes with it
+    try:
+        with pytest.raises(InputError, match="too large"):
+            batch.write(done, tmp_path)
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, (soft, hard))
+    assert [path.name for path in tmp_path.iterdir()] == ["strides.csv"]
 
 
 def test_both_feet_are_in_time_order(folder: Path) -> None:
