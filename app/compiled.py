@@ -105,27 +105,27 @@ with contextlib.suppress(AttributeError):
     llvm.lib._lock._cblist.clear()
 
 
-class Shelf(caching.IndexDataCacheFile):  # type: ignore[misc]
+class Shelf(caching.IndexDataCacheFile):
     """A kernel's files. What a power cut spoilt is compiled again and replaced; a full disk keeps none."""
 
     def _load_index(self) -> dict[Any, str]:
         with contextlib.suppress(Exception):  # a torn pickle raises anything
-            return dict(super()._load_index())
+            return dict(super()._load_index())  # type: ignore[no-untyped-call]
         return {}
 
     def load(self, key: object) -> object:
         """What was kept, or None."""
         with contextlib.suppress(Exception):
-            return super().load(key)
+            return super().load(key)  # type: ignore[no-untyped-call]
         return None
 
     def save(self, key: object, data: object) -> None:
         """Keep it, where there is room."""
         with contextlib.suppress(OSError):
-            super().save(key, data)
+            super().save(key, data)  # type: ignore[no-untyped-call]
 
 
-caching.IndexDataCacheFile = Shelf
+caching.IndexDataCacheFile = Shelf  # type: ignore[misc]
 
 #: No kernel is called from C; numba's types do not know the option.
 _OPTIONS: Any = {"no_cfunc_wrapper": True}

@@ -25,8 +25,8 @@ class Start(NamedTuple):
 
 
 def to_json(content: object) -> bytes:
-    """Compact JSON; a float comes back to the bit."""
-    return json.dumps(content, ensure_ascii=False, separators=(",", ":")).encode()
+    """Compact JSON; a float comes back to the bit. What is no letter (of a file's name) is a question mark."""
+    return json.dumps(content, ensure_ascii=False, separators=(",", ":")).encode(errors="replace")
 
 
 def from_json(data: bytes) -> dict[str, Any]:

@@ -80,6 +80,12 @@ def test_any_json_is_an_order_or_none(name: str, content: dict[str, object]) -> 
         assert repr(again) == repr(found)
 
 
+def test_what_is_no_letter_is_kept_as_a_question_mark() -> None:
+    """A file's name may hold any bytes, and JSON may name half a letter."""
+    told = journal.from_json(b'{"source": "na\\udcffme.csv"}')
+    assert journal.to_json(told) == b'{"source":"na?me.csv"}'
+
+
 @given(st.binary(max_size=60))
 def test_rubbish_is_no_order(data: bytes) -> None:
     assert journal.read_order(data) is None
