@@ -25,7 +25,7 @@ class Start(NamedTuple):
 
 
 def to_json(content: object) -> bytes:
-    """Compact JSON; a float comes back to the bit. What is no letter (of a file's name) is a question mark."""
+    """Compact JSON; a float comes back to the bit. What is no letter is a question mark."""
     return json.dumps(content, ensure_ascii=False, separators=(",", ":")).encode(errors="replace")
 
 
