@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from app.clocks import SAME, KnownClock
 from app.motion.basics import InputError, role_of
 from app.motion.recording import Recording
 from app.motion.source import Truth
@@ -40,7 +41,11 @@ def _filmed(recording: Recording, truth: Truth | None, settings: Settings) -> st
     step_ns = int(1e9 * pace / RATE_HZ)
     roles = {samples.sensor: samples.role for samples in recording.sensors}
     session = Session(
-        settings, lambda sensor: roles.get(sensor) or role_of(sensor), truth, rod_m=recording.rod_m
+        settings,
+        lambda sensor: roles.get(sensor) or role_of(sensor),
+        truth,
+        clock=lambda sensor: KnownClock(recording.clocks.get(sensor, SAME)),
+        rod_m=recording.rod_m,
     )
     taken = 0
     with film(recording.name, pace) as made:
