@@ -77,22 +77,31 @@ def _spec(head: Head) -> str | None:
 
 
 def encode(recording: Recording) -> bytes:
-    """The recording as plain CSV, rows in time order; the SPEC that made it in the first comment."""
+    """The recording as plain CSV, rows in time order; the SPEC that made it in the first comment.
+
+    A sensor goes by its foot, or by its own name where two of them stand for the same foot.
+    """
     lines = [f"# {_SPEC} {' '.join(recording.spec.split())}"] if recording.spec else []
     begin_ns = min(recording.sensors, key=recording.offset_ns).device_ns if recording.sensors else 0
-    rows = [row for s in recording.sensors for row in _rows(s, begin_ns + recording.offset_ns(s))]
+    roles = [s.role for s in recording.sensors]
+    feet = [s.sensor if roles.count(s.role) > 1 else s.role for s in recording.sensors]
+    rows = [
+        row
+        for foot, s in zip(feet, recording.sensors, strict=True)
+        for row in _rows(foot, s, begin_ns + recording.offset_ns(s))
+    ]
     rows.sort(key=lambda row: row[0])
     return "\n".join([*lines, HEADER, *(line for _, line in rows), ""]).encode()
 
 
-def _rows(samples: Samples, begin_ns: int) -> Iterator[tuple[int, str]]:
+def _rows(foot: str, samples: Samples, begin_ns: int) -> Iterator[tuple[int, str]]:
     """Stamp and line of every sample; the first came at ``begin_ns``."""
     elapsed = samples.matrix[:, 0].astype(np.int64).tolist()
     readings = samples.matrix[:, 1:7].tolist()
     fields = samples.matrix[:, 7:10].tolist()
     for elapsed_ns, reading, field in zip(elapsed, readings, fields, strict=True):
         stamp_ns = begin_ns + elapsed_ns
-        cells = [_seconds(stamp_ns), samples.sensor, *map(repr, reading), *map(_gauss, field)]
+        cells = [_seconds(stamp_ns), foot, *map(repr, reading), *map(_gauss, field)]
         yield stamp_ns, ",".join(cells)
 
 

@@ -67,7 +67,8 @@ class Recorder:
         self._sync = sync
         self._queue: deque[_Waiting] = deque()
         self._pending = b""  # the chunk being written
-        self._lost = 0  # samples that found the queue full
+        self._lost = 0  # samples that found the queue full, and how many of them the file tells
+        self._told = 0
         self._trouble = ""
         self._free = 0
         self._began_s = time.monotonic()
@@ -203,9 +204,10 @@ class Recorder:
             else:
                 method, arguments = item
                 method(self._keeper, *arguments)
-        if self._lost:
-            self._keeper.event(time.monotonic_ns(), "lost", samples=self._lost)
-            self._lost = 0
+        lost = self._lost  # the other thread goes on counting
+        if lost > self._told:
+            self._keeper.event(time.monotonic_ns(), "lost", samples=lost - self._told)
+            self._told = lost
             self._trouble = "the disk is too slow: samples were not recorded"
         self._syncer.check()
         self._pending = finish()

@@ -58,6 +58,17 @@ def test_the_spec_in_the_first_comment_comes_back(foot) -> None:
     assert encode(recording).startswith(b"# spec: sim:walk?path=oval&seed=3\nt_s,foot,")
 
 
+def test_sensors_with_names_of_their_own_are_written_by_their_feet() -> None:
+    def named(sensor: str, role: Role) -> Samples:
+        return Samples(sensor, role, 0, np.zeros((3, 10)), np.zeros(3, np.uint16))
+
+    shoes = Recording("x", "plain CSV", (named("imu-7", Role.LEFT), named("imu-9", Role.RIGHT)))
+    assert list(decoded(encode(shoes))) == ["left", "right"]
+    alike = Recording("x", "plain CSV", (named("imu-7", Role.FOOT), named("imu-9", Role.FOOT)))
+    assert b",imu-7," in encode(alike)
+    assert b",imu-9," in encode(alike)
+
+
 def plain(foot, name: str = "left", times: np.ndarray | None = None) -> bytes:
     """The foot of conftest as plain CSV."""
     t_s = foot.t_s if times is None else times

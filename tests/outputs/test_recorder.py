@@ -12,11 +12,13 @@ import time
 from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from app.formats import kept
 from app.formats.journal import Start
+from app.formats.keeping import Keeper
 from app.motion.basics import InputError, Role
 from app.motion.source import SourceInfo
 from app.outputs import recorder as recorder_module
@@ -162,6 +164,26 @@ def test_a_queue_that_is_full_is_told_and_counted(tmp_path: Path, monkeypatch: p
     kept_samples = kept.samples(found)
     assert kept_samples == samples[: len(kept_samples)]
     assert [e["samples"] for e in found.events if e["event"] == "lost"] == [80 - len(kept_samples)]
+
+
+def test_a_sample_that_is_lost_while_the_loss_is_told_is_counted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told, samples = Keeper.event, random_samples(6)
+
+    def event(keeper: Keeper, ns: int, name: str, **more: Any) -> None:
+        if name == "lost" and samples:
+            recorder.sample(samples.pop())
+        told(keeper, ns, name, **more)
+
+    monkeypatch.setattr(Keeper, "event", event)
+    monkeypatch.setattr(recorder_module, "MOST_WAITING", 0)
+    recorder = a_recorder(tmp_path)
+    for _ in range(5):
+        recorder.sample(samples.pop())
+    wait_for(lambda: not samples)
+    recorder.close(20.0)
+    assert sum(e["samples"] for e in found_in(recorder.path).events if e["event"] == "lost") == 6
 
 
 def test_a_full_disk_closes_the_recording_readable(tmp_path: Path) -> None:
