@@ -208,7 +208,8 @@ class Session:
             graphs={name: graph_of(stores[name], foot) for name, foot in main.feet.items()},
             health={name: self._health(name, store, now_s) for name, store in stores.items()},
             hindsight_from_s=max(
-                (s.time_ns(s.samples.start) * 1e-9 for s in stores.values() if s.samples), default=0.0
+                (s.shared_s(s.time_ns(s.samples.start) * 1e-9) for s in stores.values() if s.samples),
+                default=0.0,
             ),
             stored_bytes=self.stored_bytes,
             budget_bytes=self._memory.budget_bytes,

@@ -57,6 +57,13 @@ def test_over_the_budget_the_oldest_block_goes_and_the_page_is_told() -> None:
     assert main_rows(session).tobytes() == whole[start:].tobytes()
 
 
+def test_hindsight_begins_by_the_clock_that_all_sensors_share() -> None:
+    session = Session(PAPERS)
+    session.take(LONG[0]._replace(sensor="left"))
+    session.take(LONG[0]._replace(sensor="right", device_ns=LONG[0].device_ns + 7_000_000_000))
+    assert session.snapshot().hindsight_from_s == pytest.approx(7.0)
+
+
 def test_after_the_cut_a_candidate_goes_on_from_mains_checkpoint() -> None:
     session = budgeted(ROOM, LONG)
     start = session.stores["foot"].samples.start

@@ -162,10 +162,10 @@ def add_up(actions: list[Action]) -> dict[str, list[Step]]:
 
 
 def drawer(rng: np.random.Generator, vary: float) -> Draw:
-    """Uniform draws, narrowed to their middle by ``vary`` below 1 and widened above."""
+    """Uniform draws, narrowed to their middle by ``vary`` below 1."""
 
     def draw(low: float, high: float) -> float:
         middle, half = 0.5 * (low + high), 0.5 * (high - low)
-        return middle + min(vary, 1.0) * half * float(rng.uniform(-1.0, 1.0))
+        return middle + vary * half * float(rng.uniform(-1.0, 1.0))
 
     return draw

@@ -32,7 +32,7 @@ class GestureOptions:
     """Two feet and their sensors. A number out of range raises ``motion.InputError``.
 
     ``cadence_hz`` counts whole cycles: both feet once each, or the one foot of a one-foot gesture
-    once; every bout has its own, within ``vary`` of it. ``script`` is ``WHAT:SECONDS,…`` or
+    once; every bout has its own, within 8 % of it. ``script`` is ``WHAT:SECONDS,…`` or
     ``random:BOUTS`` (all gestures in random order, with rests of random length between most).
     """
 
@@ -40,7 +40,7 @@ class GestureOptions:
     cadence_hz: float = _number(1.0, 0.3, 3.0, "whole cycles a second")
     amplitude: float = _number(1.0, 0.05, 3.0, "size of every gesture; 1 is a lively step")
     vary: float = _number(
-        1.0, 0.0, 3.0, "how much everything differs from gesture to gesture; 0 is a machine"
+        1.0, 0.0, 1.0, "how much everything differs from gesture to gesture; 0 is a machine"
     )
     asymmetry: float = _number(0.15, 0.0, 0.6, "how much the right foot may differ from the left")
     hesitation: float = _number(0.04, 0.0, 1.0, "share of actions that come late")

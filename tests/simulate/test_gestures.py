@@ -134,6 +134,11 @@ def test_a_script_too_long_is_refused_and_a_foreign_sensor_too() -> None:
         make_gestures({"script": "none:1"}).truth("nose", np.zeros(1))
 
 
+def test_what_would_change_nothing_is_refused() -> None:
+    with pytest.raises(InputError, match="vary"):
+        make_gestures({"script": "none:1", "vary": "3"})
+
+
 def test_a_spec_opens_it_with_its_truth() -> None:
     recording, truth = open_recording(parse_spec("sim:gestures?script=none:1,turn_cw:3&seed=2"))
     assert {samples.sensor for samples in recording.sensors} == set(FEET)
