@@ -57,12 +57,10 @@ def lamp(batch: Batch, place: Place) -> None:
         pole.apply_translation([x, y, 0.5 * (low + high)])
         batch.mesh(pole, IRON)
     batch.box((x - 0.16, y - 0.16, 3.7), (x + 0.16, y + 0.16, 3.76), IRON, floor=True)
-    for a, b in ((-0.13, 0.13),):
-        corners = [(x + a, y + a), (x + b, y + a), (x + b, y + b), (x + a, y + b)]
-        for (px, py), (qx, qy) in zip(corners, corners[1:] + corners[:1], strict=True):
-            batch.quad(
-                [(px, py, 3.76), (qx, qy, 3.76), (qx, qy, 4.16), (px, py, 4.16)], LIGHT, own_light=True
-            )
+    a, b = -0.13, 0.13
+    corners = [(x + a, y + a), (x + b, y + a), (x + b, y + b), (x + a, y + b)]
+    for (px, py), (qx, qy) in zip(corners, corners[1:] + corners[:1], strict=True):
+        batch.quad([(px, py, 3.76), (qx, qy, 3.76), (qx, qy, 4.16), (px, py, 4.16)], LIGHT, own_light=True)
     hat = trimesh.creation.cone(radius=0.26, height=0.3, sections=8)
     hat.apply_translation([x, y, 4.16])
     batch.mesh(hat, IRON, soft=False)

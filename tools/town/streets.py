@@ -12,7 +12,7 @@ from tools.town.batch import Batch, Rgb, linear, mix, times
 
 ASPHALT, LINE, KERB = linear("#63666c"), linear("#e9e7df"), linear("#c9c4ba")
 PAVING, PAVING_TWO, YARD = linear("#b9b1a4"), linear("#aaa296"), linear("#a09684")
-SQUARE = [linear(c) for c in ("#cdbfa6", "#b59f80", "#ddd2bd", "#a8967c")]
+SQUARE = [linear(c) for c in ("#cdbfa6", "#b59f80")]
 GRASS, FIELD = linear("#86a35c"), linear("#9db070")
 PAVEMENT_UP_M = 0.12
 REACH_M = 520.0  # meadows reach so far
@@ -110,7 +110,7 @@ def square(batch: Batch, s: float, w: float, n: float, e: float) -> None:
     for i, (inner, outer) in enumerate(itertools.pairwise(radii)):
         for k in range(count):
             a, b = 2 * np.pi * k / count, 2 * np.pi * (k + 1) / count
-            ink = SQUARE[(i % 2) * 2 + (1 if (k // 4) % 2 else 0)] if i % 2 == 0 else SQUARE[1]
+            ink = SQUARE[(k // 4) % 2] if i % 2 == 0 else SQUARE[1]
             ring = [(r * float(np.cos(t)), r * float(np.sin(t)), up + 0.008) for r, t in
                     ((inner, a), (outer, a), (outer, b), (inner, b))]  # fmt: skip
             batch.quad(ring, ink)
