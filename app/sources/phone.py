@@ -55,15 +55,16 @@ class PhoneSource(Inbox):
         if isinstance(pushed, Malformed):
             answer = self.take(data)
             return (OK, answer) if '"ack"' in answer else (BAD, f"{pushed.why}; {answer}")
+        try:
+            worn = sensor_and_axes(query, self._options.foot, self._options.axes)
+        except InputError as error:
+            return BAD, str(error)
         phone = self._phones.get(pushed.device)
         if phone is None:
             if len(self._phones) >= MOST_PHONES:
                 return TOO_MANY, f"{MOST_PHONES} phones are known already"
-            try:
-                sensor, axes = sensor_and_axes(query, self._options.foot, self._options.axes)
-            except InputError as error:
-                return BAD, str(error)
-            phone = self._phones[pushed.device] = Phone(sensor, axes)
+            phone = self._phones[pushed.device] = Phone(*worn)
+        phone.wear(*worn)
         host_ns = time.monotonic_ns()
         message = phone.push(pushed, host_ns)
         if message is None:

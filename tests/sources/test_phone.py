@@ -53,6 +53,22 @@ def test_a_wrong_push_is_answered_as_the_app_shows_it() -> None:
     status, text = source.push(json.dumps(pushes(1)[0]).encode(), {"axes": "up"})
     assert status == 499
     assert "axes=" in text
+    status, text = source.push(json.dumps(pushes(1)[0]).encode(), {"foot": "lefft"})
+    assert status == 499
+    assert "foot='lefft'" in text
+
+
+def test_a_push_address_that_was_put_right_holds_from_then_on() -> None:
+    source = phone()
+    for number, body in enumerate(pushes(20)):
+        query = {"axes": "x,-y,-z"} if number < 10 else {"axes": "y,x,-z", "foot": "right"}
+        assert source.push(json.dumps(body).encode(), query) == (200, "ok")
+    told = phone()
+    for body in pushes(20):
+        told.push(json.dumps(body).encode(), {"axes": "y,x,-z", "foot": "right"})
+    after = [sample._replace(host_ns=0, seq=0) for sample in source._waiting if sample.sensor == "right"]
+    assert len(after) >= 50
+    assert after == [sample._replace(seq=0) for sample in waiting(told)][-len(after) :]
 
 
 def test_ever_more_phones_are_not_remembered() -> None:

@@ -16,11 +16,12 @@ from statistics import median
 from typing import NamedTuple
 
 from app.formats.mounting import Axes, parse_axes
+from app.formats.options import FEET
 from app.formats.units import G_MPS2
 from app.formats.wire.making import scaled
 from app.formats.wire.message import MOST_NS, Malformed, Message
 from app.formats.wire.readings import Readings
-from app.motion.basics import Vector
+from app.motion.basics import InputError, Vector
 from app.motion.samples import Sample
 
 #: On top of the shoe, screen up, top edge to the toe.
@@ -103,6 +104,12 @@ class Phone:
         self._seq, self._stamp = 0, -1
         self._scale = 0.0  # of the force: unit and sign, 0 until told
         self._held: list[tuple[int, Vector, Vector]] = []
+
+    def wear(self, sensor: str, axes: Axes) -> None:
+        """Which foot and how it sits, by now; after a change unit and sign are told anew."""
+        if (sensor, axes) != (self._sensor, self._axes):
+            self._sensor, self._axes = sensor, axes
+            self._scale, self._held, self.notes = 0.0, [], []
 
     def push(self, push: Push, host_ns: int) -> Message | None:
         """The new samples, if the message completes some."""
@@ -215,7 +222,8 @@ def _number(push: Push) -> int:
 
 
 def sensor_and_axes(query: Mapping[str, str], foot: str | None, axes: Axes | None) -> tuple[str, Axes]:
-    """What a push address says of its phone: ``/push?foot=left&axes=y,x,-z``."""
-    name = query.get("foot", foot or "foot")
-    sensor = name if name in ("left", "right", "foot") else "foot"
+    """What a push address says of its phone: ``/push?foot=left&axes=y,x,-z``; else ``InputError``."""
+    sensor = query.get("foot", foot or "foot")
+    if sensor not in FEET:
+        raise InputError(f"foot={sensor!r}: expected one of {', '.join(FEET)}")
     return sensor, parse_axes(query["axes"]) if "axes" in query else axes or ON_TOP
