@@ -1,7 +1,8 @@
 """Heart: how sound a sensor's stream is: its last ten seconds, one light, and the reason in words.
 
 A ring of one-second bins, so a sample costs the same after an hour. What is lost is told by the sensor's own
-stamps: a step of k usual steps lost k − 1 samples.
+stamps: a step of k usual steps lost k − 1 samples, unless it is so long that the sensor was cut off: no radio
+loses samples like that, but a cable that is out does.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ from typing import NamedTuple
 from app.clocks import Clock
 from app.motion.basics import GaitPhase, Role, Vector
 from app.motion.health import Health, Light, Recent
-from app.motion.samples import Sample
+from app.motion.samples import GAP_NS, Sample
 
 BINS = 10
 BIN_NS = 1_000_000_000
@@ -28,8 +29,6 @@ QUIET_S = 0.1
 STAND_NS = 500_000_000
 #: So many stances tell something.
 STANCES = 4
-#: Longer than this without a sample, a gap is time switched off and its samples are not counted.
-OFF_NS = 10 * BIN_NS
 FEET = {Role.LEFT: "left foot", Role.RIGHT: "right foot", Role.FOOT: "foot", Role.OTHER: "sensor"}
 
 
@@ -40,6 +39,7 @@ class Bin:
     second: int
     samples: int = 0
     lost: int = 0
+    cut_s: float = 0.0  # without a sample at all, before the first that came again
     duplicated: int = 0
     rejected: int = 0
     saturated: int = 0
@@ -100,8 +100,11 @@ class Monitor:
         return self._bins[-1]
 
     def _step(self, now: Bin, step_ns: int) -> None:
-        if self._step_ns and 1.5 * self._step_ns < step_ns < OFF_NS:
-            now.lost += round(step_ns / self._step_ns) - 1
+        usual_ns = self._step_ns
+        if usual_ns and step_ns > max(GAP_NS, 3.0 * usual_ns):
+            now.cut_s += step_ns * 1e-9
+        elif usual_ns and step_ns > 1.5 * usual_ns:
+            now.lost += round(step_ns / usual_ns) - 1
         self._steps.append(step_ns)
         self._until_median -= 1
         if not self._until_median:
@@ -139,6 +142,7 @@ class Monitor:
             disturbance=math.sqrt(sum(b.field2 for b in bins) / fields) if fields >= STANCES else None,
             drift_ppm=self._clock.line.drift_ppm if self._clock.settled else None,
             silent_s=silent_s,
+            cut_s=sum(b.cut_s for b in bins),
         )
 
 
@@ -222,6 +226,9 @@ def _transport(r: Recent) -> list[tuple[Light, str]]:
     found = []
     if r.silent_s > SILENT_S:
         found.append((Light.RED, f"silent for {r.silent_s:.1f} s: is it on, charged and in reach?"))
+    if r.cut_s > 0.0:
+        gone = f"nothing came from it for {r.cut_s:.1f} s"
+        found.append((Light.AMBER, f"{gone}: was it unplugged, without power or out of reach?"))
     if r.lost >= 3 and (light := light_of(r.lost / all_of, LOST)):
         share = f"{percent(r.lost / all_of)} of samples lost in the last 10 s"
         found.append((light, f"{share}: move the receiver closer"))

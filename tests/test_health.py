@@ -70,9 +70,20 @@ def test_what_is_over_is_forgotten() -> None:
     assert seen(monitor)[1] is Light.GREEN
 
 
-def test_a_sensor_switched_off_for_long_lost_nothing() -> None:
-    monitor = watched(stream(60.0), lambda sample: not 1000 < sample.seq < 3500)
-    assert seen(monitor)[0].lost == 0
+@pytest.mark.parametrize("cut_s", [1.5, 5.0, 25.0])
+def test_a_cable_that_was_out_is_told_as_such_and_lost_no_samples(cut_s: float) -> None:
+    """Not as a radio's loss, at any length; and ten seconds after it is in again all is well."""
+    back = round(100 * (20.0 + cut_s))
+
+    def plugged(sample: Sample) -> bool:
+        return not 2000 < sample.seq < back
+
+    recent, light, reason = seen(watched(stream(20.0 + cut_s + 3.0), plugged))
+    assert recent.lost == 0
+    assert recent.cut_s == pytest.approx(cut_s)
+    told = f"nothing came from it for {cut_s:.1f} s: was it unplugged, without power or out of reach?"
+    assert (light, reason) == (Light.AMBER, f"right foot: {told}")
+    assert seen(watched(stream(20.0 + cut_s + 11.5), plugged))[1:] == (Light.GREEN, "")
 
 
 def test_samples_that_went_by_unwatched_are_not_lost() -> None:

@@ -20,7 +20,7 @@ class Recent(NamedTuple):
 
     rate_hz: float
     samples: int
-    lost: int  # missing between stamps
+    lost: int  # missing between stamps, but not where nothing came for long (`cut_s`)
     duplicated: int
     rejected: int  # not finite, or out of order
     saturated: int
@@ -32,6 +32,7 @@ class Recent(NamedTuple):
     drift_ppm: float | None  # the sensor's clock against the host's, positive: too fast
     silent_s: float  # behind the sensor that came last
     damaged: float = 0.0  # part of what its line brings that makes no packet
+    cut_s: float = 0.0  # nothing came for so long at a stretch: no loss of single samples
 
 
 class Health(NamedTuple):
