@@ -9,6 +9,7 @@ import numpy as np
 from app.estimator.tracker import track
 from app.motion.basics import Floats
 from app.settings import Settings
+from app.simulate.foot import rotate_to_body
 from app.simulate.sensors import SensorErrors, read
 from app.simulate.walk import make_walk
 from benchmarks import scoring
@@ -85,18 +86,10 @@ def one(bend: Bend, seed: int, drift_radps: float, settings: Settings) -> float:
     place, q_nb = walk.truth(ideal.sensor, t_s)
     in_n, in_b = bend(place, chance)
     matrix = ideal.matrix.copy()
-    matrix[:, 7:10] += in_b + in_body(q_nb, in_n)
+    matrix[:, 7:10] += in_b + rotate_to_body(q_nb, in_n)
     matrix[:, 4:7] += drift_radps * chance.choice([-1.0, 1.0], 3) * (t_s / t_s[-1])[:, None]
     x, y, z = (BIAS_RADPS * chance.standard_normal(3)).tolist()
     errors = SensorErrors(NOISE, ((0.0, 0.0, 0.0), (x, y, z), (0.0, 0.0, 0.0)), RANGES, None, 0.0)
     tracker = track(read("foot", matrix[:, 0], matrix[:, 1:], errors, seed), settings)
     found, true = scoring.up(tracker.rows.table(0, tracker.rows.end)[:, :3]), scoring.up(place)
     return 100.0 * scoring.rmse_m(found, true) / scoring.path_m(true, scoring.PATH_EVERY)
-
-
-def in_body(q_nb: Floats, vectors: Floats) -> Floats:
-    """Vectors [n, 3] of *n* in *b*, by quaternions [n, 4], wxyz."""
-    w, u = q_nb[:, :1], -q_nb[:, 1:]
-    t = 2.0 * np.cross(u, vectors)
-    turned: Floats = vectors + w * t + np.cross(u, t)
-    return turned
