@@ -59,9 +59,9 @@ class House:
         self.shown = Shown()
         self._browser, self._pages, self.address = browser, list[Page](), ""
 
-    def open(self) -> Page:
+    def open(self, size: tuple[int, int] = (1280, 800), coarse: bool = False) -> Page:
         """Another browser's page."""
-        self._pages.append(open_page(self._browser, self.address))
+        self._pages.append(open_page(self._browser, self.address, size, coarse=coarse))
         return self._pages[-1]
 
     def close(self) -> None:
@@ -157,6 +157,26 @@ def test_two_feet_two_colours(house: House, page: Page, build_dir: Path) -> None
     until(lambda: blue(page) > 100 and orange(page) > 100, 90)
     assert "Feet not linked" in page.inner_text("body")
     page.screenshot(path=build_dir / "scene_two_feet.png", timeout=PATIENCE_MS)
+
+
+#: Of each foot's card: its width, its top, and the figures that are cut off.
+CARDS = """() => [...document.querySelectorAll(".ss-card.ss-left, .ss-card.ss-right")].map((e) => {
+    const b = e.getBoundingClientRect();
+    const cut = [...e.querySelectorAll(".ss-tile")].filter((t) => t.scrollWidth > t.clientWidth + 1);
+    return [b.width, b.top, cut.map((t) => t.textContent)];
+})"""
+
+
+def test_on_a_phone_the_cards_are_whole_and_below_the_shoe(house: House, build_dir: Path) -> None:
+    phone = house.open((390, 844), coarse=True)
+    house.shown.snapshot = fakes.snapshot(0.4, two=True)
+    until(lambda: len(phone.evaluate(CARDS)) == 2, 90)
+    for width, top, cut in phone.evaluate(CARDS):
+        assert width > 350
+        assert top > 844 / 2
+        assert not cut
+    phone.screenshot(path=build_dir / "scene_on_a_phone.png", timeout=PATIENCE_MS)
+    phone.close()
 
 
 def test_a_dragged_slider_makes_a_candidate_and_another_browser_agrees(
