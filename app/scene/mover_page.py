@@ -122,7 +122,7 @@ def head(panel: MoverPanel, plan: Town, wall: tuple[int, int], kiosk: bool) -> s
         "keys": panel.keys.id, "plan": hud.plan(plan), "wall": wall, "kiosk": kiosk, "fov": FOV_DEG,
     }  # fmt: skip
     style = "".join((HERE / name).read_text(encoding="utf-8") for name in ("page.css", "mover.css"))
-    names = ("mover_camera.js", "mover_hud.js", "present.js", "watching.js")
+    names = ("mover_camera.js", "mover_loading.js", "mover_hud.js", "present.js", "watching.js")
     script = "".join((HERE / name).read_text(encoding="utf-8") for name in names)
     script = script.replace("MOVER_TOLD", json.dumps(told, separators=(",", ":")), 1) + marks([])
     return f"<title>Stridescope</title><style>{style}</style><script>{script}</script>"

@@ -28,7 +28,8 @@ pytestmark = pytest.mark.timeout(400)
 
 TOWN = make_town()
 TILE = (360, 180)
-#: The town is there, its light map and the sky are finished, the state is shown, and nothing is left to draw.
+#: The town is there, its light map and the sky are finished, the state is shown, nothing is left to draw, and
+#: the picture that stood before it is gone.
 SETTLED = """() => {
   const nodes = window.__viserMutable?.nodeRefFromName, drawn = window.__viserTestpoints?.rendererInfo.render;
   const finished = (name) => {
@@ -37,8 +38,13 @@ SETTLED = """() => {
     return all > 0 && all === done;
   };
   return finished("/world/town") && finished("/world/sky") && drawn.frame > 4 &&
-    document.querySelector(".mover.mv-ready") !== null;
+    document.querySelector(".mover.mv-ready") !== null && document.querySelector(".mover-loading") === null;
 }"""
+#: What a page says while it waits for the town.
+NOTED = """window.noted = []; setInterval(() => {
+  const words = document.querySelector(".ml-words")?.textContent;
+  if (words && !window.noted.includes(words)) window.noted.push(words);
+}, 20);"""
 #: What is going on, in words.
 SAYS = "(words) => document.querySelector('.mv-reason').textContent === words"
 
@@ -77,6 +83,7 @@ class House:
     def open(self, query: str, size: tuple[int, int]) -> Page:
         page = self.browser.new_page(viewport={"width": size[0], "height": size[1]})
         page.set_default_timeout(PATIENCE_MS)
+        page.add_init_script(NOTED)
         page.goto(f"{self.door.address}/?fixedDpr=1&{query}")
         page.wait_for_function(SETTLED, timeout=PATIENCE_MS)
         page.wait_for_function(SAYS, arg=self.visit.reason, timeout=PATIENCE_MS)
@@ -130,6 +137,7 @@ def test_three_tiles_are_one_wide_window(house: House, build_dir: Path) -> None:
 def test_a_kiosk_shows_no_panel_and_the_operator_has_one(house: House, build_dir: Path) -> None:
     kiosk = house.open("kiosk=1", (800, 450))
     kiosk.get_by_text("both feet march").first.wait_for(timeout=PATIENCE_MS)
+    assert kiosk.evaluate("window.noted")  # until it was there, and no longer
     assert not kiosk.get_by_text("Next visitor").first.is_visible()
     kiosk.screenshot(path=build_dir / "mover_kiosk.png", timeout=PATIENCE_MS)
     kiosk.close()
