@@ -87,7 +87,9 @@ class Datagrams:
     def feed(self, data: bytes, sender: Address, host_ns: int) -> list[Sample]:
         """The samples that a datagram completes."""
         known = self._senders.get(sender)
-        if known is None and _is_ours(data):
+        if (known is None or known.decoder is None) and _is_ours(
+            data
+        ):  # also of one that sent rubbish before
             return self.intake.take(data, host_ns)[0]
         if known is None:
             known = self._admit(sender, host_ns)

@@ -67,6 +67,17 @@ def test_two_sensors_and_a_board_on_one_port() -> None:
     assert min(counts.values()) >= 55
 
 
+@pytest.mark.parametrize("rubbish", [b"", b"booting\n", b"{", bytes(1000)])
+def test_rubbish_first_makes_no_stranger_of_a_board(rubbish: bytes) -> None:
+    """A board may print while it starts, or a message be cut."""
+    box = Datagrams()
+    assert not box.feed(rubbish, ("10.0.0.9", 9), 0)
+    sent = walk(5, "left")
+    assert box.feed(encode_binary(1, sent, doubles=True), ("10.0.0.9", 9), sent[-1].host_ns) == [
+        sample._replace(host_ns=sent[-1].host_ns) for sample in sent
+    ]
+
+
 def test_temperatures_are_told_by_sensor_whichever_way_they_come() -> None:
     box = Datagrams(names={"10.0.0.7": "left", "10.0.0.8": "right"})
     devices: dict[str, Model] = {"10.0.0.7": ngimu.NgimuDevice(), "10.0.0.8": ximu3_talk.Ximu3Device()}
