@@ -46,14 +46,14 @@ class Annexe:
     async def _serve(self) -> None:
         """Until it ends: by itself, or with us."""
         command = ("-m", "app", "mover", "--no-open", "--port", "0", *door_arguments(self._access))
-        process = await asyncio.create_subprocess_exec(
-            sys.executable,
-            *command,
-            env=environment(self._access),
-            stdin=DEVNULL,
-            stdout=PIPE,
-            stderr=DEVNULL,
-        )
+        env = environment(self._access)
+        try:
+            process = await asyncio.create_subprocess_exec(
+                sys.executable, *command, env=env, stdin=DEVNULL, stdout=PIPE, stderr=DEVNULL
+            )
+        except OSError as error:
+            self._say(f"The town could not be opened: {error.strerror}")
+            return
         assert process.stdout is not None
         try:
             with contextlib.suppress(TimeoutError):

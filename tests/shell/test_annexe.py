@@ -60,3 +60,21 @@ def test_it_opens_once_and_ends_with_the_walk() -> None:
     address = asyncio.run(scenario())
     with pytest.raises(urllib.error.URLError):
         urllib.request.urlopen(f"{address}healthz", timeout=30)
+
+
+def test_a_machine_that_starts_no_process_is_told_and_ends_in_peace(monkeypatch: pytest.MonkeyPatch) -> None:
+    async def refused(*_: object, **__: object) -> None:
+        raise BlockingIOError(11, "Resource temporarily unavailable")
+
+    async def scenario() -> list[str]:
+        said: list[str] = []
+        annexe = Annexe(Access(), said.append)
+        annexe.open()
+        await asyncio.sleep(0.01)
+        await annexe.close()
+        return said
+
+    monkeypatch.setattr(asyncio, "create_subprocess_exec", refused)
+    first, last = asyncio.run(scenario())
+    assert first == "Opening the town"
+    assert "Resource temporarily unavailable" in last
