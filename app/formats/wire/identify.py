@@ -31,6 +31,7 @@ PROBE_BAUDS = (115200, 38400, 9600, 460800, 921600, 57600)
 _ENOUGH = 3  # packets
 _SHARE = 0.5  # of the bytes from the first sound packet on
 _KEPT = 16384
+_MORE = 1.5  # datagrams are looked at again when there are so many times the bytes: a stranger costs little
 
 
 @dataclass(frozen=True)
@@ -98,17 +99,22 @@ class Identifier:
     """
 
     def __init__(self, datagrams: bool = False) -> None:
-        self.heardgrams = datagrams
+        self._datagrams = datagrams
         self.heard = b""
+        self._bytes, self._look_at = 0, 0.0
         self._osc = 0
 
     def feed(self, data: bytes) -> Found | None:
         """What it is, as soon as that is certain."""
-        if self.heardgrams and _knows(data):
+        if self._datagrams and _knows(data):
             self._osc += 1
             if self._osc >= _ENOUGH:
                 return Found("ngimu", f"{self._osc} datagrams of OSC as an NGIMU sends them")
         self.heard = (self.heard + data)[-_KEPT:]
+        self._bytes += len(data)
+        if self._datagrams and self._bytes < self._look_at:
+            return None
+        self._look_at = _MORE * self._bytes
         return identify(self.heard)
 
 

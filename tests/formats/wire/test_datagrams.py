@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from app.formats.mounting import AS_GIVEN
 from app.formats.options import Options
-from app.formats.wire import datagrams, lines, ngimu, ximu3, ximu3_talk
+from app.formats.wire import datagrams, identify, lines, ngimu, ximu3, ximu3_talk
 from app.formats.wire.catalogue import Model
 from app.formats.wire.datagrams import Datagrams
 from app.formats.wire.message import encode_binary, encode_json
@@ -76,6 +76,16 @@ def test_rubbish_first_makes_no_stranger_of_a_board(rubbish: bytes) -> None:
     assert box.feed(encode_binary(1, sent, doubles=True), ("10.0.0.9", 9), sent[-1].host_ns) == [
         sample._replace(host_ns=sent[-1].host_ns) for sample in sent
     ]
+
+
+def test_a_stranger_costs_little(monkeypatch: pytest.MonkeyPatch) -> None:
+    """All sensors wait while one is looked at."""
+    looked: list[int] = []
+    monkeypatch.setattr(identify, "identify", lambda data: looked.append(len(data)))
+    box = Datagrams()
+    for number in range(1000):
+        box.feed(bytes(1000), ("10.0.0.9", 9), number * 1_000_000)
+    assert sum(looked) < 150_000  # a million came
 
 
 def test_temperatures_are_told_by_sensor_whichever_way_they_come() -> None:
