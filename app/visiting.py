@@ -99,7 +99,8 @@ class Visiting:
     def take(self, sample: Sample) -> None:
         """A sensor's sample."""
         reading = self.sensors.take(sample)
-        if reading is not None and self.guide is not None and not self._puppeteered(sample.host_ns):
+        listened = self.guide is not None and not self._fault and not self._puppeteered(sample.host_ns)
+        if reading is not None and self.guide is not None and listened:
             self.guide.take(reading)
 
     def begin_anew(self) -> None:
@@ -257,6 +258,8 @@ class Visiting:
         return round(EYE_M + self._depth * math.sin(self._bob), 4)
 
     def _go_on_with_guide(self) -> None:
+        if self.guide is not None and self._fault:
+            self.guide.wait()
         if self.guide is None or not self.guide.over or self.guide.fitted is None:
             return
         fitted, self.guide = self.guide.fitted, None

@@ -61,6 +61,8 @@ class Intake:
         if foot.newest_ns is not None and t_ns <= foot.newest_ns and foot.newest_ns - t_ns < 1_000_000_000:
             foot.late += 1
             t_ns = foot.newest_ns + 1
+        if foot.newest_ns is not None and t_ns - foot.newest_ns > SILENCE_NS:
+            foot.stamps.clear()  # a cable that was out makes no slow sensor
         foot.newest_ns = t_ns
         foot.stamps.append(t_ns)
         side = _OTHER[role] if self.swapped else role

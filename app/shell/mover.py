@@ -9,8 +9,9 @@ import asyncio
 import contextlib
 import logging
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from os.path import realpath
 
 from app.damage import Damage
 from app.door.access import Access
@@ -24,6 +25,7 @@ from app.home.calibrations import Corrections
 from app.motion.basics import InputError, Role, role_of
 from app.motion.commands import MoverCommand, Order, RestartHere
 from app.motion.samples import Sample
+from app.motion.source import Link
 from app.outputs.senders import AxesSender, Outlet, PacketSender
 from app.scene.mover_page import MoverScene
 from app.shell.aside import aside
@@ -110,6 +112,7 @@ def open_feeds(options: Options) -> list[Feed]:
     if options.left or options.right:
         if options.source or not (options.left and options.right):
             raise InputError("expected --source alone, or both --left and --right")
+        demand_two_ports(options.left, options.right)
         return [Feed(with_sensors(open_source(spec, changes=False), side), side) for side, spec in
                 (("left", options.left), ("right", options.right))]  # fmt: skip
     return [Feed(with_sensors(open_source(options.source or DEFAULT_SOURCE, changes=False), None), None)]
@@ -126,6 +129,21 @@ def with_sensors(source: Source, side: str | None) -> Source:
     if side is None and not {Role.LEFT, Role.RIGHT} <= held:
         raise InputError(f"--source {came}: expected the sensors left and right")
     return source
+
+
+def demand_two_ports(left: str, right: str) -> None:
+    """One serial port is one sensor, under whatever names; ``InputError`` otherwise."""
+    specs = parse_spec(left), parse_spec(right)
+    if {spec.kind for spec in specs} == {"serial"} and len({realpath(spec.target) for spec in specs}) == 1:
+        raise InputError(f"--left and --right are both {specs[0].target}: expected a port for each foot")
+
+
+def waiting(feeds: Sequence[Feed]) -> str:
+    """What the sources that bring nothing say of themselves: what is being tried, or what is wrong."""
+    idle = [feed for feed in feeds if feed.source.link is not Link.LIVE and feed.source.detail]
+    return "; ".join(
+        f"{feed.side} foot: {feed.source.detail}" if feed.side else feed.source.detail for feed in idle
+    )
 
 
 def addresses(operate: str, watch: str, options: Options) -> list[str]:
@@ -296,7 +314,7 @@ class Mover:
         if self._message_until and time.monotonic() > self._message_until:
             self._say("")
         feet = {self._role(name): kept for feed in self._feeds for name, kept in feed.counters().items()}
-        self._visiting.trouble = self._damage.told(feet, time.monotonic())
+        self._visiting.trouble = self._damage.told(feet, time.monotonic()) or waiting(self._feeds)
         self._visit = self._visiting.look(time.monotonic_ns())
         scene.tell(self._visit)
 

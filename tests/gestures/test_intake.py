@@ -43,6 +43,16 @@ def test_different_rates_do_no_harm_and_are_said() -> None:
     assert made.fault(4_996_000_000) == ""
 
 
+def test_a_cable_that_was_out_is_no_slow_sensor() -> None:
+    made = intake()
+    for k in range(2000):
+        made.take(sample("left", 10.0 * k, 10.0 * k))
+        if not 1000 < k < 1960:
+            made.take(sample("right", 10.0 * k, 10.0 * k))
+    assert made.sensor(Role.RIGHT).rate_hz == pytest.approx(100.0, rel=0.05)
+    assert made.note() == ""
+
+
 def test_a_missing_and_a_silent_foot_are_named() -> None:
     made = intake()
     assert "no sensor" in made.fault(0)

@@ -48,6 +48,23 @@ def test_swapped_feet_are_seen(seed: int) -> None:
     assert "swapped" in result.words
 
 
+def test_a_step_during_which_a_sensor_was_silent_begins_anew() -> None:
+    """What one foot did meanwhile does not count, nor does the time that passed."""
+    guide, all_ = SetUpGuide(DefaultSettings()), performed(seed=1)
+    began_ns = all_[0].t_ns
+    for reading in all_:
+        if reading.t_ns - began_ns > 7_000_000_000:
+            break
+        guide.take(reading)
+    assert guide.task.title == "March in place"
+    guide.wait()
+    assert (guide.task.title, guide.task.part) == ("March in place", 0.0)
+    assert "silent" in guide.task.note
+    much_later = all_[-1]._replace(t_ns=all_[-1].t_ns + 60_000_000_000)
+    guide.take(much_later)
+    assert (guide.task.title, guide.task.part) == ("March in place", 0.0)
+
+
 def test_a_timid_visitor_gets_lower_thresholds_that_hear_them() -> None:
     timid = fitted(guided(performed(amplitude=0.4, seed=2))).settings
     lively = fitted(guided(performed(amplitude=1.3, seed=2))).settings

@@ -20,7 +20,7 @@ from app.commands.mover import wall_of
 from app.door.access import Access
 from app.gestures.packet import decode
 from app.motion.basics import InputError, MotionId
-from app.shell.mover import Options, addresses
+from app.shell.mover import Options, addresses, demand_two_ports
 from tests.refusals import refused
 from tests.scene.pages import PATIENCE_MS
 
@@ -114,6 +114,16 @@ def test_arrow_keys_in_a_real_browser_walk_the_town_to_a_target(browser: Browser
 )
 def test_mistakes_are_one_line(arguments: list[str], word: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert word in refused(capsys, "mover", "--no-open", "--port", "0", *arguments)
+
+
+def test_two_feet_are_two_ports(tmp_path: Path) -> None:
+    port, alias = tmp_path / "port", tmp_path / "alias"
+    port.touch()
+    alias.symlink_to(port)
+    demand_two_ports(f"serial:{port}", f"serial:{tmp_path / 'other'}")
+    demand_two_ports("sim:gestures?script=none:1", "sim:gestures?script=none:1")
+    with pytest.raises(InputError, match="a port for each foot"):
+        demand_two_ports(f"serial:{port}", f"serial:{alias}?baud=9600")
 
 
 @pytest.mark.parametrize("text", ["3", "x", "0x1", "3x", "3x1x1", "10x1"])
