@@ -291,6 +291,8 @@ def test_a_home_that_cannot_be_written_and_odd_words_in_the_environment(tmp_path
     [(">&-", 0, ""), ("2>&- <&-", 0, ""), ("> /dev/full", 2, "cannot be written")],
 )
 def test_nowhere_to_write_to_is_no_traceback(tmp_path: Path, where: str, code: int, said: str) -> None:
+    if "full" in where and not Path("/dev/full").exists():
+        pytest.skip("this system has no /dev/full")
     (tmp_path / "walk.csv").write_text(csv_of(still_rows(1)))
     script = f"{sys.executable} -m app info {tmp_path}/walk.csv {where}"
     environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
