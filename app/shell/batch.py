@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Mapping
 from dataclasses import asdict, replace
@@ -21,7 +22,7 @@ from app.gestures.papers import PapersDecoder
 from app.gestures.words import Decision
 from app.motion.basics import Floats, InputError, Role
 from app.motion.commands import KnowBias
-from app.motion.estimate import ATTITUDE
+from app.motion.estimate import ATTITUDE, Trust
 from app.motion.recording import Recording
 from app.motion.samples import ClockLine, GyroBias, Samples
 from app.outputs import tables
@@ -201,9 +202,11 @@ def folder_lines(done: OfFolder) -> list[str]:
         for sensor, foot in feet.items():
             share = "" if foot["closure_pct"] is None else f" {foot['closure_pct']:7.2f} %"
             closes = f"closes {foot['closure_m']:8.2f} m{share}"
+            word = foot["trust"]["word"] if foot["trust"] else "good"
+            doubt = "" if word == "good" else f"  {word}"
             text.append(
                 f"  {one['recording']!s:<{width}}  {sensor:<6} {one['duration_s']:7.1f} s"
-                f" {foot['strides']:5d} strides {foot['distance_m']:9.2f} m, {closes}"
+                f" {foot['strides']:5d} strides {foot['distance_m']:9.2f} m, {closes}{doubt}"
             )
     return text + [f"  skipped {name}: {why}" for name, why in done.skipped]
 
@@ -222,7 +225,16 @@ def foot_summary(tracker: Tracker) -> dict[str, object]:
         "height_range_m": float(np.ptp(rows[:, 2])) if len(rows) else 0.0,
         "stance_fraction": float(np.mean(rows[:, 10] == 0.0)) if len(rows) else 0.0,
         "segments": 1 + len(tracker.segments),
+        "trust": sureness(tracker.trust),
     }
+
+
+def sureness(trust: Trust | None) -> dict[str, object] | None:
+    """How sure an estimator is of where its walk ended; None where it does not know."""
+    if trust is None:
+        return None
+    half_axes_m = [trust.major_m, trust.minor_m] if math.isfinite(trust.major_m) else None
+    return {"word": trust.word, "why": trust.why, "within_m": half_axes_m}
 
 
 def write(done: Processed, folder: Path) -> list[Path]:
@@ -308,6 +320,13 @@ def gestures_lines(done: Decoded) -> list[str]:
     return text
 
 
+def in_words(trust: Trust | None) -> str:
+    """How sure it is, behind a foot's line."""
+    if trust is None:
+        return ""
+    return f"; ± {trust.major_m:.2f} m, {trust.word}" + (f": {trust.why}" if trust.why else "")
+
+
 def lines(done: Processed) -> list[str]:
     """The result for a person."""
     recording = done.recording
@@ -322,6 +341,6 @@ def lines(done: Processed) -> list[str]:
         percent = "" if foot["closure_pct"] is None else f" ({foot['closure_pct']:.2f} %)"
         text.append(
             f"  {name}: {foot['strides']} strides, {foot['distance_m']:.2f} m, ends {foot['closure_m']:.2f} m"
-            f"{percent} from its start, height range {foot['height_range_m']:.2f} m"
+            f"{percent} from its start, height range {foot['height_range_m']:.2f} m{in_words(tracker.trust)}"
         )
     return text

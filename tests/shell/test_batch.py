@@ -8,6 +8,8 @@ from dataclasses import replace
 
 import pytest
 
+from app.motion.estimate import Trust
+from app.motion.recording import Recording
 from app.motion.samples import ClockLine
 from app.session import Session
 from app.settings import BUILT_IN, Settings
@@ -49,6 +51,22 @@ def test_a_foot_that_stood_has_no_percentage() -> None:
     tracker = estimate(foot("strides=1&still_s=5"), threshold_radps=20.0)
     assert tracker.distance_m == 0.0
     assert batch.foot_summary(tracker)["closure_pct"] is None
+
+
+def test_how_sure_the_filter_is_stands_in_the_summary_and_in_words() -> None:
+    walk = foot("strides=12&noise=1")
+    half = walk.matrix.copy()
+    half[:, 4:7] *= 0.5  # as of a sensor whose range is not what it is said to be
+    for samples, word in ((walk, "good"), (replace(walk, matrix=half), "lost")):
+        done = batch.estimate(Recording("walk", "made", (samples,)), BUILT_IN["default"])
+        (tracker,) = done.trackers.values()
+        told = batch.foot_summary(tracker)["trust"]
+        sure = tracker.trust
+        assert sure is not None
+        assert told == {"word": word, "why": sure.why, "within_m": [sure.major_m, sure.minor_m]}
+        assert f", {word}" in batch.lines(done)[-1]
+    assert batch.sureness(None) is None
+    assert batch.sureness(Trust(math.inf, 1.0, 0.0, "lost", "no stance for 3 s"))["within_m"] is None  # type: ignore[index]
 
 
 def test_process_is_the_live_session_to_the_bit() -> None:
