@@ -308,6 +308,7 @@ def test_ctrl_c_while_the_program_is_imported_says_nothing() -> None:
     """It comes at the worst moment: in the middle of an import."""
     script = """
 import importlib.abc, os, signal, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)  # also where the tests run in the background
 class Finder(importlib.abc.MetaPathFinder):
     def find_spec(self, name, path, target=None):
         if name == "app.commands.info":
