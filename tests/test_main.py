@@ -318,7 +318,7 @@ from app.__main__ import main
 main()
 """
     done = subprocess.run(
-        [sys.executable, "-c", script, "--version"], cwd=ROOT, capture_output=True, text=True, timeout=60,
+        [sys.executable, "-c", script, "--version"], cwd=ROOT, capture_output=True, text=True, timeout=300,
         check=False,
     )  # fmt: skip
     assert (done.returncode, done.stdout, done.stderr) == (-signal.SIGINT, "", "")
