@@ -46,7 +46,8 @@ SHELL = {"shell", "commands", "__main__", "__init__"}
 WIRED = {
     "measuring": {"doctor"},
     "run": {"annexe", "aside", "hand_in", "librarian", "serving", "taping", "walk", "work"},
-    "walk": {"before", "remembering", "taping"},
+    "walk": {"before", "early", "remembering", "taping"},
+    "record": {"aside", "early"},
     "mover": {"aside", "serving"},
     "librarian": {"aside", "shelf"},
 }

@@ -19,6 +19,8 @@ from app.outputs.recorder import Recorder
 from app.saving import Saver
 from app.session import Session
 from app.settings import BUILT_IN
+from app.shell.aside import aside
+from app.shell.early import Early
 from app.sources.opening import open_source
 from app.sources.phone import PhoneSource
 from app.sources.source import Source
@@ -38,7 +40,8 @@ def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str],
     source = open_source(spec, finish=True, changes=False)
     if isinstance(source, PhoneSource):
         raise InputError(f"{spec}: a phone comes by the page's port: walk --source {spec} --record {folder}")
-    warm_up(START.estimator)
+    if source.replay:
+        warm_up(START.estimator)
     recorder = Recorder(folder, "default", spec, source.info, source.made_by, key=key())
     tell(f"Recording to {recorder.path}  (Ctrl-C ends it)")
     recorder.start(Start(START, START, False))
@@ -52,7 +55,10 @@ def record(spec: str, folder: Path, seconds: float | None, tell: Callable[[str],
 
 
 async def _fill(source: Source, recorder: Recorder, seconds: float | None) -> None:
-    task = asyncio.create_task(_take(source, recorder))
+    prepared = asyncio.create_task(aside(lambda: warm_up(START.estimator), "prepare"))
+    if source.replay:  # it can wait; what a sensor sends is recorded at once
+        await prepared
+    task = asyncio.create_task(_take(source, recorder, prepared))
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, task.cancel)
@@ -60,9 +66,18 @@ async def _fill(source: Source, recorder: Recorder, seconds: float | None) -> No
         await asyncio.wait_for(task, seconds)
 
 
-async def _take(source: Source, recorder: Recorder) -> None:
-    taken, corrections = 0, Corrections(lambda: source.info)
-    session, saver = Session(START, budget_bytes=BUDGET), Saver()
+async def _take(source: Source, recorder: Recorder, prepared: asyncio.Task[None]) -> None:
+    session = Session(START, budget_bytes=BUDGET)
+    early = Early(session.take)
+    if source.replay:
+        await early.release(prepared)
+        await _record(source, recorder, session, early)
+    else:
+        await asyncio.gather(early.release(prepared), _record(source, recorder, session, early))
+
+
+async def _record(source: Source, recorder: Recorder, session: Session, early: Early[Sample]) -> None:
+    taken, corrections, saver = 0, Corrections(lambda: source.info), Saver()
     saver.begin(session)
     async for item in source:
         taken += 1
@@ -74,10 +89,12 @@ async def _take(source: Source, recorder: Recorder) -> None:
             recorder.start(Start(START, START, False))
         elif isinstance(item, Sample):
             sample = corrections.apply(item)
-            session.take(sample)
             recorder.sample(sample)
-            for due in saver.due(session) if taken % LOOK_AFTER == 0 else ():
+            early.add(sample) if early.holds else session.take(sample)
+            for due in saver.due(session) if taken % LOOK_AFTER == 0 and not early else ():
                 recorder.estimate(*due)
+            while early.full:
+                await asyncio.sleep(0.02)
             if taken % LOOK_AFTER == 0:
                 recorder.learn(source.info)
             while source.replay and recorder.waiting > 10_000:  # as fast as possible is as fast as the disk

@@ -182,10 +182,10 @@ class Viewer:
         """Read the source; where another one comes, leave it for that one."""
         if isinstance(self.walk.source, Glanced):
             self._librarian.open(self._options.source, changes=not self._options.told)
-        await self._prepare()
+        prepared = asyncio.create_task(self._prepare(), name="prepare")
         while True:
             reading = asyncio.create_task(
-                self.walk.read(self._take_order, self._fresh.set, self._work.fill), name="read"
+                self.walk.read(self._take_order, self._fresh.set, self._work.fill, prepared), name="read"
             )
             coming = asyncio.create_task(self._coming.get(), name="coming")
             try:
@@ -271,7 +271,7 @@ class Viewer:
 
     def _record(self, on: bool) -> None:
         if on:
-            self._taping.start(self.walk.source, self._options.source, self.walk.remembering.told)
+            self.walk.record(self._options.source)
         else:
             self._taping.stop()
 
@@ -297,7 +297,7 @@ class Viewer:
             try:
                 snapshot, counters = self.walk.session.snapshot(), self.walk.source.counters
                 snapshot = self._seen = self._damage.seen(snapshot, counters, time.monotonic())
-                self._taping.walk(self.walk.info, snapshot.main.feet)
+                self._taping.walk(self.walk.info, None if self.walk.behind else snapshot.main.feet)
                 self._shown = self.walk.before.look(snapshot, self._status_now())
                 self.walk.session.name_feet(self.walk.before.names)
                 scene.draw(snapshot, self._shown)

@@ -49,15 +49,15 @@ class Taping:
         """Of the recording under way, or the last one."""
         return self._recorder.state if self._recorder is not None else self._last
 
-    def start(self, source: Source, spec: str, told: Iterable[Order]) -> None:
-        """Begin, unless it runs; ``told`` are the orders that the walk began with."""
+    def start(self, source: Source, spec: str, told: Iterable[Order]) -> bool:
+        """Begin, unless it runs, and say whether; ``told`` are the orders that the walk began with."""
         if self._recorder is not None and not self._recorder.on:
             self.stop()
-        if self._recorder is None:
-            self._recorder = Recorder(
-                self._folder, self._profile, spec, source.info, source.made_by, key=key()
-            )
-            self.begin(told)
+        if self._recorder is not None:
+            return False
+        self._recorder = Recorder(self._folder, self._profile, spec, source.info, source.made_by, key=key())
+        self.begin(told)
+        return True
 
     def begin(self, told: Iterable[Order]) -> None:
         """The walk, or its source, begins here: what a walk that is recorded from here begins with."""
@@ -89,10 +89,10 @@ class Taping:
         while self._recorder is not None and self._recorder.on and self._recorder.waiting > MOST_WAITING:
             await asyncio.sleep(0.01)
 
-    def order(self, order: Order) -> None:
-        """One that the session was given."""
+    def order(self, order: Order, waiting: int = 0) -> None:
+        """One that the session was given, or will be as the last of so many that are ``waiting`` for it."""
         if self._recorder is not None:
-            self._recorder.order(self._session().number, order)
+            self._recorder.order(self._session().number + waiting, order)
 
     def mark(self, who: str, text: str) -> None:
         """Mark this moment."""
@@ -105,12 +105,17 @@ class Taping:
         if self._recorder is not None:
             self._recorder.marker("pre-flight", told)
 
-    def walk(self, info: SourceInfo, feet: tuple[FootView, ...]) -> None:
-        """Where the feet are drawn, and the strides that ended since the last look."""
+    def walk(self, info: SourceInfo, feet: tuple[FootView, ...] | None) -> None:
+        """Where the feet are drawn, and the strides that ended since the last look.
+
+        None: the session is behind what is recorded, where its estimate would stand in the wrong place.
+        """
         if self._recorder is None or time.monotonic() < self._posed_s + POSES_S:
             return
         self._posed_s = time.monotonic()
         self._recorder.learn(info)
+        if feet is None:
+            return
         session = self._session()
         for foot in feet:
             self._recorder.pose(foot.sensor, foot.position_n, foot.q_nb)

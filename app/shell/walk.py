@@ -1,14 +1,15 @@
-"""Shell: one source being walked: its samples, corrected, into the session and onto the disk."""
+"""Shell: one source being walked: its samples, corrected, onto the disk and into the session."""
 
 from __future__ import annotations
 
 import asyncio
+import logging
 import time
 from collections.abc import Callable
 from dataclasses import replace
 
 from app.clocks import Clock, clock_for
-from app.motion.basics import Role, role_of
+from app.motion.basics import InputError, Role, role_of
 from app.motion.commands import Order, RestartHere
 from app.motion.recording import Landing, Stretch
 from app.motion.samples import Sample
@@ -17,9 +18,15 @@ from app.motion.status import Status
 from app.session import Session
 from app.settings import Settings
 from app.shell.before import Before
+from app.shell.early import Early
 from app.shell.remembering import Remembering
 from app.shell.taping import Taping
 from app.sources.source import Source
+
+log = logging.getLogger(__name__)
+
+#: Between looks while no more can wait for the session.
+PAUSE_S = 0.02
 
 
 class Walk:
@@ -34,6 +41,7 @@ class Walk:
         self.remembering = Remembering(lambda: source.info, self.before.calibrated)
         self.last_sample_s = time.monotonic()
         self._taping = taping
+        self._early = Early(self._take_waiting)
         info = source.info
         self.session = Session(
             source.settings or settings, self._role, info.truth, budget_bytes, self._clock, epoch, info.rod_m
@@ -52,10 +60,30 @@ class Walk:
 
     def apply(self, order: Order) -> None:
         """Apply it, and record it: one that is refused is refused again in a replay."""
+        if self._early:  # behind the samples that came before it
+            self._early.add(order)
+            self._taping.order(order, len(self._early))
+            return
         try:
             self.session.apply(order)
         finally:
             self._taping.order(order)
+
+    def record(self, spec: str) -> None:
+        """Begin to record it, as what it was opened by, with all that the session has not had yet."""
+        told = self.remembering.told
+        if not self._taping.start(self.source, spec, told):
+            return
+        for place, item in enumerate(self._early, start=1):
+            if isinstance(item, Sample):
+                self._taping.sample(item)
+            elif item not in told:
+                self._taping.order(item, place)
+
+    @property
+    def behind(self) -> bool:
+        """Whether something is recorded that the session has not had yet."""
+        return bool(self._early)
 
     def told(self, status: Status) -> Status:
         """The status with what is known of the source now."""
@@ -77,15 +105,32 @@ class Walk:
     def health(self) -> dict[str, object]:
         """For /healthz; read on the door's thread, so only what is one read."""
         line = {sensor: vars(counters) for sensor, counters in self.source.counters.items()}
-        return {"link": self.source.link.value, "taken": self.session.number, "line": line}
+        return {"link": self.source.link.value, "taken": self.session.number + len(self._early), "line": line}
 
     async def read(
         self,
         obey: Callable[[Order], None],
         changed: Callable[[], None],
         fill: Callable[[Session], None],
+        prepared: asyncio.Task[None],
     ) -> None:
-        """All that the source brings. ``changed``: there is something to draw; ``fill``: after a landing."""
+        """All that the source brings. ``changed``: there is something to draw; ``fill``: after a landing.
+
+        What a sensor sends is recorded at once and taken when all is ``prepared``; a replay waits for that.
+        """
+        release = self._early.release(prepared, changed)
+        if self.source.replay:
+            await release
+            await self._read(obey, changed, fill)
+        else:
+            await asyncio.gather(release, self._read(obey, changed, fill))
+
+    async def _read(
+        self,
+        obey: Callable[[Order], None],
+        changed: Callable[[], None],
+        fill: Callable[[Session], None],
+    ) -> None:
         async for item in self.source:
             if isinstance(item, RestartHere):
                 obey(Order(item, "replay", time.monotonic_ns()))
@@ -104,14 +149,29 @@ class Walk:
             else:
                 self._take_sample(item)
             changed()
+            while self._early.full:
+                await asyncio.sleep(PAUSE_S)
 
     def _take_sample(self, sample: Sample) -> None:
         sample = self.before.sample(sample)
         if (known := self.remembering.order(sample.sensor)) is not None:
             self.apply(known)
-        self.session.take(sample)
-        self._taping.sample(sample)
         self.last_sample_s = time.monotonic()
+        self._taping.sample(sample)
+        if self._early.holds:
+            self._early.add(sample)
+        else:
+            self.session.take(sample)
+
+    def _take_waiting(self, item: Sample | Order) -> None:
+        """One that is recorded already."""
+        if isinstance(item, Sample):
+            self.session.take(item)
+            return
+        try:
+            self.session.apply(item)
+        except InputError as error:
+            log.warning("%s", error)
 
     def _land(self, landing: Landing) -> bool:
         """Show a far place at once; a recording of it wants every sample."""
