@@ -67,17 +67,25 @@ async def _fill(source: Source, recorder: Recorder, seconds: float | None) -> No
 
 
 async def _take(source: Source, recorder: Recorder, prepared: asyncio.Task[None]) -> None:
-    session = Session(START, budget_bytes=BUDGET)
+    session, corrections = Session(START, budget_bytes=BUDGET), Corrections(lambda: source.info)
     early = Early(session.take)
-    if source.replay:
-        await early.release(prepared)
-        await _record(source, recorder, session, early)
-    else:
-        await asyncio.gather(early.release(prepared), _record(source, recorder, session, early))
+    recording = _record(source, recorder, session, early, corrections)
+    try:
+        if source.replay:
+            await early.release(prepared)
+            await recording
+        else:
+            await asyncio.gather(early.release(prepared), recording)
+    finally:
+        source.close()
+        for sample in source.unread():  # whoever sent them may know that they have come
+            recorder.sample(corrections.apply(sample))
 
 
-async def _record(source: Source, recorder: Recorder, session: Session, early: Early[Sample]) -> None:
-    taken, corrections, saver = 0, Corrections(lambda: source.info), Saver()
+async def _record(
+    source: Source, recorder: Recorder, session: Session, early: Early[Sample], corrections: Corrections
+) -> None:
+    taken, saver = 0, Saver()
     saver.begin(session)
     async for item in source:
         taken += 1

@@ -139,8 +139,8 @@ class Viewer:
         """Open the page, then everything else."""
         self._desk.open()
         with contextlib.ExitStack() as closing:
-            closing.callback(lambda: self.walk.close())
             closing.callback(self._taping.stop)
+            closing.callback(lambda: self.walk.close())
             if self._options.record is not None:
                 self._record(True)
             scene = Scene(self._desk.submit)
@@ -200,9 +200,9 @@ class Viewer:
 
     def _begin(self, spec: str, source: Source) -> None:
         """Another source is another walk, on the same page."""
-        self._taping.stop()
         before = self.walk
         before.close()
+        self._taping.stop()
         self._options = replace(self._options, source=spec)
         self.walk = self._walk_of(source, before.session.main.settings, before.session.epoch + 1)
         self._work.forget()

@@ -54,9 +54,12 @@ class Walk:
         return replace(info, sensors={**info.sensors, **self.before.names})
 
     def close(self) -> None:
-        """Let go of the source, and keep what the walk taught of its sensors."""
+        """Let go of the source, with what it had still on the disk; keep what was learnt of its sensors."""
         self.remembering.keep(self.session)
         self.source.close()
+        for sample in self.source.unread():
+            if self._taping.on:
+                self._recorded(sample)
 
     def apply(self, order: Order) -> None:
         """Apply it, and record it: one that is refused is refused again in a replay."""
@@ -152,12 +155,17 @@ class Walk:
             while self._early.full:
                 await asyncio.sleep(PAUSE_S)
 
-    def _take_sample(self, sample: Sample) -> None:
+    def _recorded(self, sample: Sample) -> Sample:
+        """The sample as it is taken, on the disk."""
         sample = self.before.sample(sample)
         if (known := self.remembering.order(sample.sensor)) is not None:
             self.apply(known)
-        self.last_sample_s = time.monotonic()
         self._taping.sample(sample)
+        return sample
+
+    def _take_sample(self, sample: Sample) -> None:
+        sample = self._recorded(sample)
+        self.last_sample_s = time.monotonic()
         if self._early.holds:
             self._early.add(sample)
         else:

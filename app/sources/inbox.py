@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import threading
 import time
+from collections import deque
 from collections.abc import AsyncIterator, Callable, Mapping, Sequence
 
 from app.formats.wire.stream import Counters
@@ -42,6 +43,7 @@ class Inbox(Live):
         self._temperatures = temperatures
         self._lock = threading.Lock()
         self._waiting: list[Sample] = []
+        self._batch: deque[Sample] = deque()  # what is being read of them
         self._sensors: dict[str, Role] = {}
         self._overflowed = 0
         self._last_s: float | None = None
@@ -120,18 +122,26 @@ class Inbox(Live):
             self._loop, self._news, self._woken = asyncio.get_running_loop(), asyncio.Event(), False
         while True:
             with self._lock:
-                batch, self._waiting = self._waiting, []
-                self._woken = bool(batch)
+                batch = self._batch = deque(self._waiting)
+                self._waiting, self._woken = [], bool(batch)
                 self._news.clear()
-            for i, sample in enumerate(batch, start=1):
-                yield sample
-                if i % BREATH == 0:
+            came = len(batch)
+            while batch:
+                yield batch.popleft()
+                if len(batch) % BREATH == 0:
                     await asyncio.sleep(0)
-            if batch:
+            if came:
                 await asyncio.sleep(REST_S)
             else:
                 await self._news.wait()
 
     def close(self) -> None:
-        """Nobody reads any more: keep nothing for them."""
-        self._left, self._waiting = True, []
+        """Nobody reads any more: keep nothing that comes from now on."""
+        self._left = True
+
+    def unread(self) -> list[Sample]:
+        """What came and was not read."""
+        with self._lock:
+            unread = [*self._batch, *self._waiting]
+            self._batch, self._waiting = deque(), []
+        return unread

@@ -191,6 +191,10 @@ class Replay:
     def close(self) -> None:
         """Nothing is held open."""
 
+    def unread(self) -> Sequence[Sample]:
+        """Nothing: it brings what is asked for."""
+        return ()
+
     async def _play(self) -> AsyncIterator[Item]:
         for order in opening_orders(self._journal, anew=False):
             yield order

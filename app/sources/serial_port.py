@@ -131,6 +131,10 @@ class SerialPort(Live):
         if self._thread is not None:
             self._thread.join(CLOSE_S)
 
+    def unread(self) -> list[Sample]:
+        """What came and was not read."""
+        return self._inbox.unread()
+
     # --- the port's life, in its thread ---
 
     def _run(self) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import AsyncIterator, Mapping
+from collections.abc import AsyncIterator, Mapping, Sequence
 from typing import Protocol
 
 from app.formats.wire.stream import Counters
@@ -78,6 +78,9 @@ class Source(Protocol):
     def close(self) -> None:
         """Let go of ports and sockets; may be called before the first sample, and twice."""
 
+    def unread(self) -> Sequence[Sample]:
+        """What came and was not read, once it is closed; senders may have been told that it has come."""
+
 
 class Live:
     """What is the same for all live sources: they cannot be paused, and know no truth."""
@@ -94,6 +97,10 @@ class Live:
     def counters(self) -> Mapping[str, Counters]:
         """None are kept."""
         return {}
+
+    def unread(self) -> Sequence[Sample]:
+        """Nothing."""
+        return ()
 
     def control(self, command: ReplayCommand) -> None:
         """Refused: what a sensor measures is over when it is over."""

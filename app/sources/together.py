@@ -69,6 +69,10 @@ class Together(Live):
         for source in self._sources:
             source.close()
 
+    def unread(self) -> list[Sample]:
+        """What came and was not read."""
+        return [*self._inbox.unread(), *(sample for source in self._sources for sample in source.unread())]
+
     async def _read(self) -> AsyncIterator[Item]:
         tasks = [asyncio.create_task(self._take(source)) for source in self._sources]
         try:

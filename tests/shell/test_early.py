@@ -27,6 +27,7 @@ from tests.estimator.walks import foot, one_by_one, rows_of
 from tests.sources.links import walk as links
 
 SAMPLES = one_by_one(foot("strides=4&rate_hz=100&noise=1"))
+FIRST, REST = SAMPLES[:-20], SAMPLES[-20:]
 LOWER = SetCandidate((("sensor_height_m", 0.04),))
 
 
@@ -72,8 +73,8 @@ class Starting:
         self.reading.cancel()
         with contextlib.suppress(asyncio.CancelledError):
             await self.reading
-        self.taping.stop()
         self.walk.close()
+        self.taping.stop()
 
 
 @contextlib.asynccontextmanager
@@ -108,13 +109,15 @@ async def replayed(path: Path) -> Session:
 
 
 def test_what_came_before_anything_was_compiled_is_recorded(tmp_path: Path) -> None:
-    """Ctrl-C in that time ends the recording with all that was sent."""
+    """Ctrl-C in that time ends the recording with all that was sent, read or not."""
 
     async def scenario() -> None:
         async with starting(tmp_path) as now:
-            await now.send(SAMPLES)
+            await now.send(FIRST)
             assert now.walk.behind
             assert not now.walk.session.stores
+            now.reading.cancel()
+            now.source.put(REST)
 
     asyncio.run(scenario())
     (kept,) = load(only(tmp_path)).sensors

@@ -77,6 +77,18 @@ def test_a_walk_that_never_reads_costs_a_stated_memory(monkeypatch: pytest.Monke
     assert len(got) <= 100
 
 
+def test_what_came_and_was_not_read_is_there_at_the_end() -> None:
+    """In the middle of a burst, too; what comes after the end is not kept."""
+    box = Inbox("test", "test")
+    box.put([sample(i) for i in range(100)])
+    assert asyncio.run(read(box, 40)) == list(range(40))
+    box.put([sample(100)])
+    box.close()
+    box.put([sample(101)])
+    assert [left.seq for left in box.unread()] == list(range(40, 101))
+    assert box.unread() == []
+
+
 def test_a_reader_that_has_gone_harms_no_sender() -> None:
     box = Inbox("test", "test")
     box.put([sample(0)])

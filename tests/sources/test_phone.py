@@ -102,4 +102,4 @@ def test_a_walk_that_was_left_takes_nothing_more_and_says_so() -> None:
     assert isinstance(answer, Refused)
     assert "over" in answer.why
     assert source.push(json.dumps(pushes(1)[0]).encode(), {})[0] == 499
-    assert waiting(source) == []
+    assert [sample.seq for sample in source.unread()] == list(range(5))
