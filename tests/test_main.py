@@ -179,6 +179,7 @@ def test_rows_that_do_not_count_are_dropped_and_counted(run: Run, tmp_path: Path
     rows[350] = rows[349]
     told = processed(run, tmp_path, rows)
     assert (told["samples"], told["dropped_rows"]) == (496, 4)
+    assert told["dropped"] == {"not a finite number": 2, "time went backward": 1, "repeated time": 1}
     assert foot_of(told)["closure_m"] == 0.0
 
 

@@ -38,6 +38,12 @@ class Recording:
         ends = (self.offset_ns(s) + int(s.matrix[-1, 0]) for s in self.sensors if len(s))
         return max(ends, default=0) * 1e-9
 
+    @property
+    def dropped(self) -> dict[str, int]:
+        """Rows that were not taken, by reason in words, over all sensors."""
+        reasons = {reason: 0 for samples in self.sensors for reason in samples.dropped}
+        return {reason: sum(s.dropped.get(reason, 0) for s in self.sensors) for reason in reasons}
+
     def offset_ns(self, samples: Samples) -> int:
         """How long after the recording's first sample this sensor's came, on the clock that all share."""
         return self._began_ns(samples) - min(map(self._began_ns, self.sensors))

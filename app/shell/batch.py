@@ -128,6 +128,7 @@ def summary(done: Processed) -> dict[str, object]:
         "assumed": list(done.recording.assumed),
         "samples": sum(len(sensor) for sensor in sensors),
         "dropped_rows": done.recording.dropped_rows,
+        "dropped": done.recording.dropped,
         "duration_s": done.recording.duration_s,
         "rate_hz": sensors[0].rate_hz if sensors else 0.0,
         "estimator_s": done.estimator_s,
@@ -327,13 +328,20 @@ def in_words(trust: Trust | None) -> str:
     return f"; ± {trust.major_m:.2f} m, {trust.word}" + (f": {trust.why}" if trust.why else "")
 
 
+def reasons(dropped: Mapping[str, int]) -> str:
+    """`` (499 time went backward)``, behind how many."""
+    listed = ", ".join(f"{count} {reason}" for reason, count in dropped.items() if count)
+    return f" ({listed})" if listed else ""
+
+
 def lines(done: Processed) -> list[str]:
     """The result for a person."""
     recording = done.recording
     samples = sum(len(sensor) for sensor in recording.sensors)
     text = [
         f"{recording.name} ({recording.format}): {samples} samples, {recording.duration_s:.1f} s at"
-        f" {recording.sensors[0].rate_hz:.0f} Hz, {recording.dropped_rows} rows dropped"
+        f" {recording.sensors[0].rate_hz:.0f} Hz, {recording.dropped_rows} rows"
+        f" dropped{reasons(recording.dropped)}"
     ]
     text += [f"  {sentence}" for sentence in recording.assumed]
     for name, tracker in done.trackers.items():

@@ -53,7 +53,7 @@ def calibrate(
 async def _lead(source: Source, sensor: str | None, look: Callable[[GuideView], None]) -> Guide:
     begun: list[Guide] = []
     task = asyncio.create_task(_listen(source, sensor, look, begun))
-    watching = asyncio.create_task(_watch(source, look, begun))
+    watching = asyncio.create_task(_watch(source, sensor, look, begun))
     loop = asyncio.get_running_loop()
     for number in (signal.SIGINT, signal.SIGTERM):
         loop.add_signal_handler(number, task.cancel)
@@ -66,18 +66,30 @@ async def _lead(source: Source, sensor: str | None, look: Callable[[GuideView], 
     raise InputError("calibration given up; nothing was saved")
 
 
-async def _watch(source: Source, look: Callable[[GuideView], None], begun: list[Guide]) -> None:
-    """Say what is being waited for while no samples come."""
+async def _watch(
+    source: Source, sensor: str | None, look: Callable[[GuideView], None], begun: list[Guide]
+) -> None:
+    """Say what is being waited for while no samples come, or only those of others."""
     while True:
         await asyncio.sleep(WATCH_S)
         if source.link in (Link.WAITING, Link.LOST) and source.detail:
             look((begun[0] if begun else Guide("")).view()._replace(note=source.detail))
+        elif not begun and sensor is not None and source.info.sensors:
+            heard = ", ".join(source.info.sensors)
+            look(Guide("").view()._replace(note=f"waiting for {sensor}: only {heard} is heard"))
+
+
+def _unheard(source: Source, sensor: str | None) -> InputError:
+    heard = ", ".join(source.info.sensors) or "none"
+    return InputError(f"{source.info.name}: no sample of sensor {sensor!r}, expected one of {heard}")
 
 
 async def _listen(
     source: Source, sensor: str | None, look: Callable[[GuideView], None], begun: list[Guide]
 ) -> Guide:
     guide, looked_s, step = None, 0.0, -1
+    if source.replay and sensor is not None and sensor not in source.info.sensors:
+        raise _unheard(source, sensor)
     async for item in source:
         if not isinstance(item, Sample) or item.sensor != (sensor or item.sensor):
             continue
@@ -93,8 +105,7 @@ async def _listen(
             looked_s, step = now_s, len(guide.legs)
             look(guide.view())
     if guide is None:
-        heard = ", ".join(source.info.sensors) or "none"
-        raise InputError(f"{source.info.name}: no sample of sensor {sensor!r}, expected one of {heard}")
+        raise _unheard(source, sensor)
     view = guide.view()
     raise InputError(
         f"{source.info.name}: ended at step {view.step + 1} of {view.steps} ({view.words}): nothing was saved"

@@ -117,9 +117,10 @@ def lines(told: dict[str, Any]) -> list[str]:
         count = figures["gaps"]
         gaps = f", {count} gap{'s' * (count > 1)} of {figures['gaps_s']:.1f} s" if count else ""
         dropped = sum(figures["dropped"].values())
+        why = f" ({', '.join(figures['dropped'])})" if dropped else ""
         text.append(
             f"  {sensor}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
-            f" {dropped} dropped, {figures['saturated']} saturated{gaps}{_warmth(told, sensor)}"
+            f" {dropped} dropped{why}, {figures['saturated']} saturated{gaps}{_warmth(told, sensor)}"
         )
     text += [f"  {sentence}" for sentence in told["assumed"]]
     if "began" in told:

@@ -352,18 +352,14 @@ def opening_orders(journal: Journal | None, anew: bool) -> list[Order]:
 
 
 def source_info(recording: Recording, truth: Truth | None = None) -> SourceInfo:
-    """What a recording says of itself; rows dropped are summed over its sensors by reason."""
-    dropped: dict[str, int] = {}
-    for samples in recording.sensors:
-        for reason, count in samples.dropped.items():
-            dropped[reason] = dropped.get(reason, 0) + count
+    """What a recording says of itself."""
     return SourceInfo(
         name=recording.name,
         format=recording.format,
         sensors={samples.sensor: samples.role for samples in recording.sensors},
         rate_hz=max(samples.rate_hz for samples in recording.sensors),
         assumed=recording.assumed,
-        dropped=dropped,
+        dropped=recording.dropped,
         duration_s=recording.duration_s,
         truth=truth,
         clocks=recording.clocks,

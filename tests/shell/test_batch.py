@@ -90,6 +90,14 @@ def test_the_lines_for_a_person_name_each_foot() -> None:
     assert "right: 4 strides" in text
 
 
+def test_what_was_not_taken_is_told_with_its_reason() -> None:
+    """Of a file that runs backward one row is left: without the reason that is a riddle."""
+    (left,) = walk("feet=1&strides=2").recording.sensors
+    one = replace(left, matrix=left.matrix[:1], dropped={"time went backward": 499, "repeated time": 0})
+    done = batch.estimate(Recording("back.csv", "x", (one,), dropped_rows=499), PAPERS)
+    assert batch.lines(done)[0].endswith("499 rows dropped (499 time went backward)")
+
+
 def test_a_profile_for_hindsight_under_the_papers_estimator_is_the_papers_estimate() -> None:
     recording = walk("feet=2&strides=8").recording
     plain = batch.estimate(recording, BUILT_IN["papers"])

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,9 +15,12 @@ import pytest
 from app.commands.calibrate import Teller, bar
 from app.motion.basics import InputError
 from app.motion.status import GuideView
+from app.shell import calibrate as calibrating
 from app.shell.calibrate import calibrate
 from app.simulate.calibration import make_calibration
+from app.sources.inbox import Inbox
 from tests.refusals import refused
+from tests.sources.links import walk
 
 
 def run(tmp_path: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
@@ -50,7 +54,7 @@ def test_json_is_one_object_and_no_save_keeps_nothing(tmp_path: Path) -> None:
     ("arguments", "words"),
     [
         (("--source", "sim:walk?distance=3&speed=0"), "step"),
-        (("--source", "sim:calibration?speed=0", "--sensor", "left"), "expected one of foot"),
+        (("--source", "sim:calibration", "--sensor", "left"), "expected one of foot"),  # before it plays
         (("--source", "sim:calibration", "--gravity", "5"), "--gravity"),
         (("--source", "sim:calibration?still=x"), "number"),
     ],
@@ -67,6 +71,21 @@ def test_the_look_follows_the_guide() -> None:
     assert seen[-1].done
     with pytest.raises(InputError, match="ended at step 1"):
         calibrate("sim:walk?distance=2&speed=0&still=0.1", None, seen.append)
+
+
+def test_a_live_source_without_the_sensor_says_which_it_hears(monkeypatch: pytest.MonkeyPatch) -> None:
+    source, seen = Inbox("udp:1", "test"), list[str]()
+    source.put(walk(3))
+    monkeypatch.setattr(calibrating, "open_source", lambda *_, **__: source)
+    monkeypatch.setattr(calibrating, "WATCH_S", 0.01)
+
+    def look(view: GuideView) -> None:
+        seen.append(view.note)
+        signal.raise_signal(signal.SIGINT)
+
+    with pytest.raises(InputError, match="given up"):
+        calibrate("udp:1", "right", look)
+    assert seen[0] == "waiting for right: only left is heard"
 
 
 def test_a_terminal_is_told_each_step_once() -> None:
