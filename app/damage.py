@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from app.formats.wire.stream import Counters
-from app.health import FEET, light_of, percent
+from app.health import FEET, light_of
 from app.motion.basics import Role
 from app.motion.health import Health, Light
 from app.motion.snapshot import Snapshot
@@ -29,19 +29,23 @@ class Damage:
 
     def __init__(self) -> None:
         self._seen: dict[str, deque[tuple[float, int, int, int]]] = {}
+        self._share: dict[str, float] = {}
 
     def share(self, sensor: str, counters: Counters, now_s: float) -> float:
-        """The damaged part of what came in the last ten seconds, 0 to 1."""
+        """The damaged part of what came in the last ten seconds, 0 to 1; a new one each second."""
         seen = self._seen.setdefault(sensor, deque())
         now = (now_s, counters.bytes_fed, counters.bytes_skipped, counters.bad_checksum)
         if seen and now[1] < seen[-1][1]:
             seen.clear()
-        if not seen or now_s - seen[-1][0] >= LOOK_S:
-            seen.append(now)
+        if seen and now_s - seen[-1][0] < LOOK_S:
+            return self._share[sensor]
+        seen.append(now)
         while len(seen) > 1 and now_s - seen[1][0] >= SPAN_S:
             seen.popleft()
         _, fed, skipped, bad = (b - a for a, b in zip(seen[0], now, strict=True))
-        return min(skipped / fed, 1.0) if bad >= LEAST_PACKETS and fed > 0 else 0.0
+        share = min(skipped / fed, 1.0) if bad >= LEAST_PACKETS and fed > 0 else 0.0
+        self._share[sensor] = share
+        return share
 
     def told(self, feet: Mapping[Role, Counters], now_s: float) -> str:
         """Which foot's line damages packets now, in words; empty where none does."""
@@ -73,5 +77,6 @@ def _with(told: Health, role: Role, share: float) -> Health:
 
 
 def _words(role: Role, share: float) -> str:
-    words = f"{percent(share)} of packets damaged in the last 10 s: check cable, plug and baud rate"
+    percents = max(1, round(100.0 * share))  # whole ones: they change so seldom that they can be read
+    words = f"{percents} % of packets damaged in the last 10 s: check cable, plug and baud rate"
     return f"{FEET[role]}: {words}"

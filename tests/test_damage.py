@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -31,6 +33,22 @@ def test_the_share_is_that_of_the_last_ten_seconds() -> None:
     assert seen_at(watch, 0.0, 30, counters) == 0.0
     assert seen_at(watch, 0.02, 10, counters, 30.0) == pytest.approx(0.02, abs=0.003)
     assert seen_at(watch, 0.0, 11, counters, 40.0) == 0.0
+
+
+def test_what_is_said_is_said_for_a_second_and_in_whole_percents() -> None:
+    """A line with a bit flipped now and then, looked at ten times a second: words that can be read."""
+    watch, counters, random = Damage(), Counters(), np.random.default_rng(3)
+    told = []
+    for i in range(400):
+        bad = int(np.count_nonzero(random.random(10) < 0.02))
+        counters.bytes_fed += 310
+        counters.bytes_skipped += 31 * bad
+        counters.bad_checksum += bad
+        told.append(watch.told({Role.LEFT: counters}, 0.125 * i))
+    changes = [i for i in range(1, len(told)) if told[i] != told[i - 1]]
+    assert len(changes) > 1
+    assert min(b - a for a, b in pairwise(changes)) >= 8
+    assert all(words.split(":")[1].split("%")[0].strip().isdigit() for words in told if words)
 
 
 def test_one_damaged_packet_is_none_and_a_new_decoder_begins_anew() -> None:

@@ -161,15 +161,30 @@
     part.vignette.style.opacity = s.vignette ? Math.min(1, s.speed / 1.2 + Math.abs(s.turn) / 0.8) : 0;
   }
 
-  // An operator's words stand between the two panels (their widths: mover_panel.py, machines.py).
-  const BESIDE = { left: 374, right: 364 }, LEAST_PX = 420, LEAST_UNIT_PX = 5.6;
+  // An operator's words stand where no panel lies: beside, above or below each, wherever more is left.
+  const PANELS = '[data-floating-window], .mantine-Paper-root[style*="max-height: 60%"]';
+  const GAP_PX = 10, LEAST_UNIT_PX = 5.6, WIDE_UNITS = 74;
+  const size = ([left, top, right, bottom]) => Math.max(0, right - left) * Math.max(0, bottom - top);
+  function free(area) {
+    for (const panel of document.querySelectorAll(PANELS)) {
+      const p = panel.getBoundingClientRect(), [left, top, right, bottom] = area;
+      if (!p.width || p.left >= right || p.right <= left || p.top >= bottom || p.bottom <= top) continue;
+      const around = [
+        [left, top, Math.min(right, p.left - GAP_PX), bottom], [Math.max(left, p.right + GAP_PX), top, right, bottom],
+        [left, top, right, Math.min(bottom, p.top - GAP_PX)], [left, Math.max(top, p.bottom + GAP_PX), right, bottom],
+      ];
+      area = around.reduce((best, other) => (size(other) > size(best) ? other : best));
+    }
+    return area;
+  }
   let placed = "";
   function place() {
     const f = mover.frame(), bare = document.documentElement.classList.contains("mover-bare");
-    const beside = !bare && f.W - BESIDE.left - BESIDE.right >= LEAST_PX;
-    const left = f.left - f.x + (beside ? BESIDE.left : 0), width = f.W - (beside ? BESIDE.left + BESIDE.right : 0);
-    const unit = Math.max(Math.min(f.H, 0.75 * width) / 100, bare ? 0 : LEAST_UNIT_PX);
-    const where = `left:${left}px;top:${f.top - f.y}px;width:${width}px;height:${f.H}px;--unit:${unit}px`;
+    const whole = [f.left - f.x, f.top - f.y, f.left - f.x + f.W, f.top - f.y + f.H];
+    const [left, top, right, bottom] = bare ? whole : free(whole);
+    const width = right - left, height = bottom - top;
+    const unit = Math.max(Math.min(height, 0.75 * width) / 100, bare ? 0 : Math.min(LEAST_UNIT_PX, width / WIDE_UNITS));
+    const where = `left:${left}px;top:${top}px;width:${width}px;height:${height}px;--unit:${unit}px`;
     if (where !== placed) root.style.cssText = placed = where;
   }
   // Thirty times a second at most, and only when something has moved: it costs as much as a house.

@@ -45,6 +45,18 @@ NOTED = """window.noted = []; setInterval(() => {
   const words = document.querySelector(".ml-words")?.textContent;
   if (words && !window.noted.includes(words)) window.noted.push(words);
 }, 20);"""
+#: No panel lies over a foot, over the map or over words, and all of them are in the window.
+CLEAR = """(size) => {
+  if (innerWidth !== size[0] || innerHeight !== size[1]) return false;
+  const boxes = (what) => [...document.querySelectorAll(what)].map((e) => e.getBoundingClientRect());
+  const all = boxes('[data-floating-window], .mantine-Paper-root[style*="max-height: 60%"]');
+  const panels = all.filter((panel) => panel.width);
+  const words = boxes(".mv-foot, .mv-said, .mv-score, .mv-map");
+  const apart = (a, b) => a.right <= b.left || b.right <= a.left || a.bottom <= b.top || b.bottom <= a.top;
+  const inside = (a) => a.left >= 0 && a.top >= 0 && a.right <= innerWidth && a.bottom <= innerHeight;
+  const clear = (a) => inside(a) && panels.every((panel) => apart(a, panel));
+  return panels.length > 0 && words.length === 5 && words.every(clear);
+}"""
 #: What is going on, in words.
 SAYS = "(words) => document.querySelector('.mv-reason').textContent === words"
 
@@ -163,6 +175,9 @@ def test_a_kiosk_shows_no_panel_and_the_operator_has_one(house: House, build_dir
     operator.mouse.wheel(0, 400)
     operator.wait_for_timeout(800)
     np.testing.assert_allclose(operator.evaluate(camera), before, atol=1e-9)
+    for width, height in ((390, 844), (640, 800), (1000, 620), (1440, 900)):
+        operator.set_viewport_size({"width": width, "height": height})
+        operator.wait_for_function(CLEAR, arg=[width, height], timeout=PATIENCE_MS)
     operator.close()
 
 
