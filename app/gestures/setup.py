@@ -35,6 +35,8 @@ STEPS = (
     Step("right", 4.0, "Turn right", "Twist your right foot out and back; keep the left one still.", 3),
     Step("aside", 4.0, "Step aside", "Lift only your right foot, out and back.", 3),
 )
+#: The steps that one foot does alone (0 left), by which it is found out which sensor is on which foot.
+ONE_SIDED = {"left": 0, "right": 1, "aside": 1}
 _FEWEST = 2  # actions of a step that was done
 _SHAKY_RADPS = 0.6  # nobody who stands still turns a foot so fast
 _DONE_S = 3.0
@@ -69,6 +71,7 @@ class SetUpGuide:
     _began_ns: int | None = None
     _now_ns: int = 0
     _note: str = ""
+    _asked_again: bool = False  # whether left is left
     _rest_radps: float = 0.0
     _seen: list[float] = field(default_factory=lambda: [-1e9, -1e9])
     _actions: dict[str, list[Action]] = field(default_factory=lambda: {step.name: [] for step in STEPS})
@@ -131,7 +134,19 @@ class SetUpGuide:
             self._number, self._note, self._began_ns = self._number + 1, "", self._now_ns
         if self._number == len(STEPS):
             self._number -= 1
+            self._end()
+
+    def _end(self) -> None:
+        """Fit, or ask once more where the one-sided steps do not tell the feet apart."""
+        wrong, right = self._sides()
+        if wrong < right or wrong == len(ONE_SIDED) or self._asked_again:
             self.fitted = self._fit()
+            return
+        self._asked_again = True
+        for name in ONE_SIDED:
+            self._actions[name].clear()
+        self._number = [step.name for step in STEPS].index("left")
+        self._note = "Left and right did not agree: once more, with the foot that is named."
 
     def _again(self, note: str) -> None:
         self._note, self._began_ns, self._rest_radps = note, self._now_ns, 0.0
@@ -139,7 +154,8 @@ class SetUpGuide:
 
     def _fit(self) -> Fitted:
         """Between rest and the smallest third of the visitor's own actions."""
-        swapped = self._swapped()
+        wrong, right = self._sides()
+        swapped = wrong == len(ONE_SIDED)
         actions = [action for done in self._actions.values() for action in done]
         sizes = sorted(action.size_rad for action in actions if action.size_rad > 0.0)
         rates = sorted(action.rate_radps for action in actions if action.rate_radps > 0.0)
@@ -150,15 +166,21 @@ class SetUpGuide:
             self.before, on_radps=round(on, 3), off_radps=round(0.5 * on, 3), sure_rad=round(sure, 3)
         )
         said = f"A foot moves above {settings.on_radps:.2f} rad/s and {math.degrees(settings.sure_rad):.0f}°."
-        turned = " Left and right were swapped: put right here." if swapped else " Left is left."
+        turned = " Left is left." if right > wrong else " Left or right is not clear: kept as they were."
+        if swapped:
+            turned = " Left and right were swapped: put right here."
         return Fitted(settings, swapped, said + turned)
 
-    def _swapped(self) -> bool:
-        """Whether the wrong foot did most of each one-sided step."""
+    def _sides(self) -> tuple[int, int]:
+        """How many one-sided steps the wrong foot did most of, and how many the right one.
+
+        Feet are swapped only where all three say so: one action done with the other foot, or two, never
+        turn sound feet about.
+        """
         wrong = right = 0
-        for name, foot in (("left", 0), ("right", 1), ("aside", 1)):
+        for name, foot in ONE_SIDED.items():
             wanted = sum(action.foot == foot for action in self._actions[name])
             other = len(self._actions[name]) - wanted
             wrong += other > wanted
             right += wanted > other
-        return wrong > right
+        return wrong, right

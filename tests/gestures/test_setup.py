@@ -9,10 +9,22 @@ from app.gestures.default import DefaultDecoder, DefaultSettings
 from app.gestures.merge import readings
 from app.gestures.setup import STEPS, Fitted, SetUpGuide
 from app.gestures.words import FootReading
-from app.motion.basics import Role
+from app.motion.basics import MotionId, Role
 from app.simulate.gestures import make_gestures
+from app.simulate.gestures_live import LiveFeet
+from app.simulate.gestures_options import parse
 
 SCRIPT = "none:3.2,forward:5,turn_ccw:4,turn_cw:4,side_right:4,none:6"
+#: What a visitor does when a step is said, and the same by the other foot.
+DOES = {
+    "March in place": MotionId.FORWARD, "Turn left": MotionId.TURN_CCW, "Turn right": MotionId.TURN_CW,
+    "Step aside": MotionId.SIDE_RIGHT,
+}  # fmt: skip
+MEANT = ("Turn left", "Turn right", "Step aside")
+OTHER_FOOT = {
+    MotionId.TURN_CCW: MotionId.TURN_CW, MotionId.TURN_CW: MotionId.TURN_CCW,
+    MotionId.SIDE_RIGHT: MotionId.SIDE_LEFT,
+}  # fmt: skip
 _OTHER = {Role.LEFT: Role.RIGHT, Role.RIGHT: Role.LEFT}
 
 
@@ -26,6 +38,23 @@ def guided(all_: list[FootReading], swapped: bool = False) -> SetUpGuide:
     for reading in all_:
         guide.take(reading._replace(foot=_OTHER[reading.foot]) if swapped else reading)
     return guide
+
+
+def followed(mistakes: list[dict[str, bool]], swapped: bool, seed: int = 0) -> tuple[SetUpGuide, bool]:
+    """A visitor who does what is said 0.6 s later, some steps of a round with the other foot; asked again?"""
+    guide, feet, again = SetUpGuide(DefaultSettings()), LiveFeet(parse({"seed": str(seed)})), False
+    said: list[MotionId] = []
+    for tick in range(1600):
+        again = again or "once more, with" in guide.task.note
+        other = mistakes[again].get(guide.task.title, False)
+        meant = DOES.get(guide.task.title, MotionId.NONE)
+        said.append(OTHER_FOOT[meant] if other else meant)
+        feet.ask(said[max(0, tick - 30)])
+        for sample in feet.advance(tick * 0.02, 0, round(tick * 2e7)):
+            foot = Role(sample.sensor)
+            reading = FootReading(foot, sample.device_ns, sample.specific_force_b, sample.angular_rate_b)
+            guide.take(reading._replace(foot=_OTHER[foot]) if swapped else reading)
+    return guide, again
 
 
 def fitted(guide: SetUpGuide) -> Fitted:
@@ -43,9 +72,26 @@ def test_twenty_seconds_are_enough(seed: int) -> None:
 
 @pytest.mark.parametrize("seed", range(4))
 def test_swapped_feet_are_seen(seed: int) -> None:
-    result = fitted(guided(performed(seed=seed), swapped=True))
+    result = fitted(followed([{}, {}], True, seed)[0])
     assert result.swapped
     assert "swapped" in result.words
+
+
+@pytest.mark.parametrize(("swapped", "wrong"), [(False, 1), (False, 2), (True, 1)])
+def test_one_step_with_the_other_foot_changes_no_verdict_and_two_are_asked_again(
+    swapped: bool, wrong: int
+) -> None:
+    guide, again = followed([dict.fromkeys(MEANT[:wrong], True), {}], swapped)
+    assert again == (swapped or wrong == 2)
+    assert fitted(guide).swapped == swapped
+
+
+def test_whose_feet_stay_unclear_keeps_them_as_they_were() -> None:
+    mistaken = {"Turn left": True, "Turn right": True}
+    guide, again = followed([mistaken, mistaken], False)
+    assert again
+    assert not fitted(guide).swapped
+    assert "not clear" in fitted(guide).words
 
 
 def test_a_step_during_which_a_sensor_was_silent_begins_anew() -> None:
