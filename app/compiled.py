@@ -3,7 +3,7 @@
 numba's own cache lies beside the sources and does not notice a change in another file: in a *called*
 function, or in a constant that a kernel froze. So before numba is imported its cache is sent to a
 per-user folder whose name is a hash of every source a kernel can see and of the numba version; where
-no such folder can be written, to a temporary one that goes at exit.
+no such folder can be written, to a temporary one that goes at exit, or nothing is kept.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import atexit
 import contextlib
 import hashlib
 import importlib.metadata
+import logging
 import os
 import platform
 import re
@@ -28,6 +29,7 @@ import platformdirs
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
 _APP = Path(__file__).parent
+_log = logging.getLogger(__name__)
 
 #: Every version leaves a folder of kernels; one that no start has used for so long is removed.
 FORGOTTEN_S = 60 * 86_400.0
@@ -65,8 +67,8 @@ def sources_hash(root: Path = _APP) -> str:
     return digest.hexdigest()[:16]
 
 
-def choose_cache_folder(name: str) -> Path:
-    """A writable folder for compiled kernels: the user's, or else one that is removed at exit."""
+def choose_cache_folder(name: str) -> Path | None:
+    """A writable folder for compiled kernels: the user's, or else one that is removed at exit; None: none."""
     folder = Path(platformdirs.user_cache_dir("stridescope", appauthor=False)) / "kernels" / name
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -75,7 +77,11 @@ def choose_cache_folder(name: str) -> Path:
         os.utime(folder)
         forget_old(folder.parent)
     except OSError:
-        folder = Path(tempfile.mkdtemp(prefix="stridescope-kernels-"))
+        try:
+            folder = Path(tempfile.mkdtemp(prefix="stridescope-kernels-"))
+        except OSError:
+            _log.warning("no folder can be written, not even a temporary one: each start compiles anew")
+            return None
         atexit.register(shutil.rmtree, folder, ignore_errors=True)
     return folder
 
@@ -91,7 +97,9 @@ def forget_old(kernels: Path) -> None:
 
 #: Names the kernels of this program: the same name, the same numbers.
 KERNELS = sources_hash()
-os.environ["NUMBA_CACHE_DIR"] = str(choose_cache_folder(KERNELS))
+FOLDER = choose_cache_folder(KERNELS)
+if FOLDER is not None:
+    os.environ["NUMBA_CACHE_DIR"] = str(FOLDER)
 
 import numba  # noqa: E402  (the folder has to be known first)
 from llvmlite.binding import ffi as llvm  # noqa: E402
@@ -133,7 +141,7 @@ _OPTIONS: Any = {"no_cfunc_wrapper": True}
 
 def kernel(function: Callable[_P, _R]) -> Callable[_P, _R]:
     """Compile ``function`` on its first call, cached, without the interpreter lock."""
-    compiled: Callable[_P, _R] = numba.njit(cache=True, nogil=True, **_OPTIONS)(function)
+    compiled: Callable[_P, _R] = numba.njit(cache=FOLDER is not None, nogil=True, **_OPTIONS)(function)
     return compiled
 
 

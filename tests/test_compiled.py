@@ -6,6 +6,7 @@ import ast
 import os
 import subprocess
 import sys
+import tempfile
 import textwrap
 import time
 from collections.abc import Iterator
@@ -73,10 +74,13 @@ def test_what_other_versions_left_long_ago_is_removed(
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     monkeypatch.setenv("HOME", str(tmp_path))
     old, recent = compiled.choose_cache_folder("old"), compiled.choose_cache_folder("recent")
+    assert old is not None
+    assert recent is not None
     (old / "a.nbc").write_bytes(b"machine code")
     long_ago_s = time.time() - 1.1 * compiled.FORGOTTEN_S
     os.utime(old, (long_ago_s, long_ago_s))
     used = compiled.choose_cache_folder("used")
+    assert used is not None
     assert sorted(used.parent.iterdir()) == [recent, used]
     os.utime(used, (long_ago_s, long_ago_s))
     assert compiled.choose_cache_folder("used") == used
@@ -177,3 +181,27 @@ def names_in_python(tree: ast.Module) -> Iterator[ast.Name]:
     for node in tree.body:
         if not (isinstance(node, ast.FunctionDef) and node.name in compiled_here):
             yield from (name for name in ast.walk(node) if isinstance(name, ast.Name))
+
+
+def test_where_nothing_can_be_written_kernels_run_and_are_not_kept(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A machine whose every folder is read-only: a line, and a slow start."""
+
+    def none(*_: object, **__: object) -> str:
+        raise FileNotFoundError(2, "No usable temporary directory found")
+
+    (tmp_path / "file").touch()
+    monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path / "file" / "cache"))
+    monkeypatch.setattr(tempfile, "mkdtemp", none)
+    assert compiled.choose_cache_folder("name") is None
+    assert [record.getMessage() for record in caplog.records] == [
+        "no folder can be written, not even a temporary one: each start compiles anew"
+    ]
+    monkeypatch.setattr(compiled, "FOLDER", None)
+    monkeypatch.setenv("NUMBA_CACHE_DIR", str(tmp_path / "file" / "kernels"))
+
+    def next_one(x: int) -> int:
+        return x + 1
+
+    assert compiled.kernel(next_one)(1) == 2
