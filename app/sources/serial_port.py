@@ -54,12 +54,15 @@ ASK_S = 10.0
 
 @dataclass(frozen=True)
 class PortSpec:
-    """One port as the SPEC says it. ``axes`` None: as is usual for the device."""
+    """One port as the SPEC says it. ``axes`` None: as is usual for the device; ``columns`` of lines without
+    a header.
+    """
 
     path: str
     wish: Wish
     foot: str = "foot"
     axes: Axes | None = None
+    columns: str | None = None
 
 
 class SerialPort(Live):
@@ -204,7 +207,7 @@ class SerialPort(Live):
         """It sends: its decoder goes on, or another sensor's begins."""
         if self._decoder is None or _another(self._started, started):
             axes = self._spec.axes or started.kind.axes
-            self._decoder = started.kind.decoder(self._spec.foot, axes, started.setup)
+            self._decoder = started.kind.decoder(self._spec.foot, axes, started.setup or self._spec.columns)
             self._seam.cut()
         self._started = started
 
@@ -243,7 +246,10 @@ class SerialPort(Live):
                     sample_s, fruitless_s = time.monotonic(), FRUITLESS_S
             self._ask_its_temperature(port)
             if time.monotonic() - sample_s > fruitless_s:
-                raise PortLostError(f"{port.path}: what comes makes no samples: starting the sensor anew")
+                why = f" ({self._decoder.notes[-1]})" if self._decoder and self._decoder.notes else ""
+                raise PortLostError(
+                    f"{port.path}: what comes makes no samples{why}: starting the sensor anew"
+                )
 
     def _ask_its_temperature(self, port: Port) -> None:
         """Now and then, where it tells it only when asked."""

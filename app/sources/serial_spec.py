@@ -1,6 +1,7 @@
 """Edge: SPEC of serial ports: ``serial:PORT?device=auto&baud=…``, and ``serial:LEFT,RIGHT?…`` for two feet.
 
 With two ports an option is meant for both; ``left.axes=`` or ``right.device=`` is meant for one.
+``columns=`` names those of a board whose lines have no header.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from collections.abc import Mapping
 from app.formats.mounting import parse_axes
 from app.formats.options import FEET
 from app.formats.wire.catalogue import KINDS
+from app.formats.wire.lines import LinesDecoder
 from app.motion.basics import InputError
 from app.sources.serial_port import PortSpec, SerialPort
 from app.sources.source import Source
@@ -17,7 +19,7 @@ from app.sources.spec import Spec
 from app.sources.starting import Wish
 from app.sources.together import Together
 
-_KEYS = ("device", "baud", "foot", "axes", "rate")
+_KEYS = ("device", "baud", "foot", "axes", "rate", "columns")
 _BAUDS = (300, 4_000_000)
 
 
@@ -56,16 +58,25 @@ def _port_spec(path: str, options: Mapping[str, str]) -> PortSpec:
     foot = options.get("foot", "foot")
     if foot not in FEET:
         raise InputError(f"foot={foot!r}: expected one of {', '.join(FEET)}")
+    device = _device(options.get("device", "auto"))
     return PortSpec(
         path,
         Wish(
-            _device(options.get("device", "auto")),
+            device,
             int(_number("baud", options["baud"], *_BAUDS)) if options.get("baud", "auto") != "auto" else None,
             _number("rate", options["rate"], 1.0, 4000.0) if "rate" in options else None,
         ),
         foot,
         parse_axes(options["axes"]) if "axes" in options else None,
+        _columns(options["columns"], device) if "columns" in options else None,
     )
+
+
+def _columns(text: str, device: str | None) -> str:
+    if device != "csv":
+        raise InputError(f"columns={text}: only a board that prints lines has columns: say device=csv too")
+    LinesDecoder("foot", columns=text)
+    return text
 
 
 def _device(text: str) -> str | None:

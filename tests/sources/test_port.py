@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import asyncio
+import math
 import os
 import tty
 from collections.abc import Iterator
+from itertools import pairwise
 
 import pytest
 
+from app.sources.opening import open_source
 from app.sources.port import Port, open_port
+from tests.sources.links import Reader
 
 HEADER = b"t_ms,ax_g,ay_g,az_g\r\n"
 
@@ -43,5 +47,27 @@ def test_what_a_board_says_at_once_is_kept_where_the_rate_was_known(
         port.set_baud(baud)
         assert b"".join(data for _, data in await port.read(0.0)) == kept
         await port.close()
+
+    asyncio.run(run())
+
+
+def test_a_board_without_a_header_is_read_by_the_columns_that_are_named(ends: tuple[int, str]) -> None:
+    master, path = ends
+    names = "t_ms,ax_g,ay_g,az_g,gx_dps,gy_dps,gz_dps"
+
+    async def run() -> None:
+        source = open_source(f"serial:{path}?device=csv&baud=115200&columns={names}&axes=x,y,z")
+        reader = Reader(source)
+        row = 0
+        async with asyncio.timeout(90):
+            while len(reader.got) < 20:
+                os.write(master, f"{10 * row},0.00,0.50,1.00,{row}.00,0.00,0.00\r\n".encode())
+                row += 1
+                await asyncio.sleep(0.01)
+        for sample, after in pairwise(reader.got):
+            assert sample.specific_force_b == pytest.approx((0.0, 0.5 * 9.80665, 9.80665))
+            assert after.angular_rate_b[0] - sample.angular_rate_b[0] == pytest.approx(math.radians(1.0))
+            assert after.device_ns - sample.device_ns == 10_000_000
+        reader.stop()
 
     asyncio.run(run())

@@ -42,6 +42,8 @@ def test_two_ports_are_left_and_right_and_may_differ() -> None:
         ("serial:a?rate=0", "rate='0'"),
         ("serial:a?axes=x,y", "axes='x,y'"),
         ("serial:a?colour=red", "unknown option 'colour'"),
+        ("serial:a?columns=ax,ay,az", "say device=csv too"),
+        ("serial:a?device=csv&columns=ax,ay", "columns=ax,ay: expected names"),
         ("serial:a,b?left.colour=red", "unknown option 'colour'"),
         ("serial:a,b?middle.axes=x,y,z", "unknown option 'middle.axes'"),
     ],

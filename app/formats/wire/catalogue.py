@@ -148,7 +148,7 @@ KINDS: dict[str, Kind] = {
         Z_UP,
         lines.FASTEST_HZ,
         146,
-        lambda sensor, axes, _: lines.LinesDecoder(sensor, axes),
+        lambda sensor, axes, columns: lines.LinesDecoder(sensor, axes, columns),
         lines.LinesDevice,
     ),
 }
