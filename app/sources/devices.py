@@ -42,7 +42,9 @@ async def _look_at(path: str, hardware: str, ask: bool) -> Device:
     try:
         port = await open_port(path, FIRST_BAUD)
         try:
-            answer = await find(port, Wish(), _quietly, ask)
+            answer = await find(port, Wish(), _quietly, ask=False)
+            if answer is None:  # a board that boots when its port is opened takes a second or two
+                answer = await find(port, Wish(), _quietly, ask)
         finally:
             await port.close()
     except PortLostError as error:

@@ -138,11 +138,13 @@ async def _listen_at_all(
     for baud in bauds:
         port.set_baud(baud)
         tell(f"listening at {baud} baud")
-        identifier, began_s = Identifier(), time.monotonic()
+        identifier, began_s, looks = Identifier(), time.monotonic(), 0
         listen_s = LISTEN_S
-        while time.monotonic() - began_s < listen_s:
+        # By the clock, and by looks: this process may be held up meanwhile.
+        while time.monotonic() - began_s < listen_s or looks * _STEP_S < listen_s:
             listen_s = LISTEN_S + (PATIENCE_S if 0 < len(identifier.heard) < _FEW else 0.0)
             await asyncio.sleep(_STEP_S)
+            looks += 1
             found = identifier.feed(b"".join(data for _, data in await port.read(0.0)))
             if found is not None:
                 _demand(port, device, found)
