@@ -3,8 +3,8 @@
 # make demo     recordings/ and assets/ anew   make lock    requirements.txt anew
 BIN := .venv/bin
 
-# Tests run four at a time: many only wait. make test WORKERS=0 runs them one by one
-WORKERS := 4
+# Tests run three at a time: many only wait. make test WORKERS=0 runs them one by one
+WORKERS := 3
 
 # make soak PARTS=network   only the parts whose titles have that word
 .PHONY: run mover setup test chromium bench soak demo lock
