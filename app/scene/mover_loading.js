@@ -1,4 +1,4 @@
-// While the town is on its way: its sky and a row of roofs, what is being waited for, and how far it is.
+// Edge, scene: while the town is on its way, its sky and a row of roofs, what is being waited for, and how far it is.
 // On a wall it is one picture over all tiles, as the town will be.
 (() => {
   const HOUSES = [14, 21, 17, 26, 19, 31, 23, 16, 28, 20, 24, 15, 22, 18]; // heights, in hundredths of the picture

@@ -75,17 +75,22 @@ def test_a_damaged_file_is_told_and_the_walk_goes_on() -> None:
     assert "not JSON" in shown.damaged
 
 
+def follow(now: Before, timeline: Timeline) -> None:
+    """Be led through a calibration to its last sample."""
+    samples = timeline.cut(0, len(timeline), 0)
+    now.sample(samples[0])
+    now.calibrate(Calibrate("start", "foot"))
+    for sample in samples[1:]:
+        now.sample(sample)
+
+
 def test_a_guided_calibration_is_found_saved_and_used() -> None:
     true = make_calibration({"seed": "2"})
     timeline = Timeline(true.recording)
     now = before()
 
     async def lead() -> None:
-        samples = timeline.cut(0, len(timeline), 0)
-        now.sample(samples[0])
-        now.calibrate(Calibrate("start", "foot"))
-        for sample in samples[1:]:
-            now.sample(sample)
+        follow(now, timeline)
         while not now.look(Session(Settings()).snapshot(), Status(LIVE, Link.LIVE)).calibration.found:  # type: ignore[union-attr]
             await asyncio.sleep(0.05)
 
@@ -150,11 +155,7 @@ def test_a_calibration_given_up_while_it_is_worked_out_leaves_nothing(
     now = before()
 
     async def lead() -> None:
-        samples = timeline.cut(0, len(timeline), 0)
-        now.sample(samples[0])
-        now.calibrate(Calibrate("start", "foot"))
-        for sample in samples[1:]:
-            now.sample(sample)
+        follow(now, timeline)
         await asyncio.sleep(0.1)
         now.calibrate(Calibrate("cancel"))
         go_on.set()
