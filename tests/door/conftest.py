@@ -47,7 +47,12 @@ class House:
 
     def connect(self, **more: object) -> ws.ClientConnection:
         """A websocket like the page's; it takes messages of any size."""
-        options: dict[str, object] = {"origin": self.origin, "subprotocols": [VERSION], **more}
+        options: dict[str, object] = {
+            "origin": self.origin,
+            "subprotocols": [VERSION],
+            "open_timeout": 60,
+            **more,
+        }
         return ws.connect(f"ws://127.0.0.1:{self.port}/", compression=None, max_size=None, **options)  # type: ignore[arg-type]
 
     def get(

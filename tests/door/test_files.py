@@ -39,7 +39,7 @@ def a_door(folder: Path, access: Access | None = None, most: int = 100_000) -> I
 
 def ask(door: Door, method: str, path: str, body: bytes | None = None, **headers: str) -> tuple[int, bytes]:
     host = f"127.0.0.1:{door.access.port}"
-    connection = http.client.HTTPConnection(host, timeout=20)
+    connection = http.client.HTTPConnection(host, timeout=60)
     named = {"Content-Type": BYTES, **{name.replace("_", "-"): value for name, value in headers.items()}}
     connection.request(method, path, body, named)
     answer = connection.getresponse()
@@ -114,7 +114,7 @@ def test_files_are_for_operators(tmp_path: Path) -> None:
 
 
 def cookie(door: Door, token: str) -> str:
-    connection = http.client.HTTPConnection(f"127.0.0.1:{door.access.port}", timeout=20)
+    connection = http.client.HTTPConnection(f"127.0.0.1:{door.access.port}", timeout=60)
     connection.request("GET", f"/?token={token}")
     return (connection.getresponse().getheader("Set-Cookie") or "").partition(";")[0]
 

@@ -21,7 +21,7 @@ def asked(
     door = Door(access, viser_port=9, rules=dict, health=dict, hand_in=HandIn(make))
     door.start()
     try:
-        connection = http.client.HTTPConnection(f"127.0.0.1:{door.access.port}", timeout=20)
+        connection = http.client.HTTPConnection(f"127.0.0.1:{door.access.port}", timeout=60)
         headers = {"Authorization": f"Bearer {token}"}
         connection.request("GET", HAND_IN, headers=headers)
         answer = connection.getresponse()

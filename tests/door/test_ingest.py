@@ -40,7 +40,7 @@ def taken() -> Taken:
 
 
 def feed(house: Any, query: str = "", **more: Any) -> ws.ClientConnection:
-    return ws.connect(f"ws://127.0.0.1:{house.port}/feed{query}", **more)
+    return ws.connect(f"ws://127.0.0.1:{house.port}/feed{query}", open_timeout=60, **more)
 
 
 def post(house: Any, body: bytes, path: str = "/push", **headers: str) -> tuple[int, str]:

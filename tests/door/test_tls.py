@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import datetime
 import socket
 import ssl
@@ -13,7 +14,7 @@ from typing import Any
 
 import msgspec
 import pytest
-import websockets.sync.client as ws
+import websockets.asyncio.client as ws
 from cryptography import x509
 
 from app.door import listening, selfmade, tls
@@ -42,12 +43,20 @@ def test_a_client_that_trusts_it_comes_in_by_each_name(certificate: Certificate,
         address = f"https://{name}:{house.port}/"
         with urllib.request.urlopen(address, context=trusting(certificate)) as answer:
             assert answer.status == 200
-    with ws.connect(
-        f"wss://127.0.0.1:{house.port}/", origin=f"https://127.0.0.1:{house.port}", subprotocols=[VERSION],  # type: ignore[arg-type, list-item]
-        ssl=trusting(certificate), compression=None, max_size=None,
+    assert asyncio.run(_answer_over_tls(house.port, trusting(certificate)))
+
+
+async def _answer_over_tls(port: int, context: ssl.SSLContext) -> bytes | str:
+    """Asked by one thread: the ``sync`` client reads in a second one, both on one TLS object without a
+    lock, and about one request in 700 is lost (Python 3.11).
+    """
+    async with ws.connect(
+        f"wss://127.0.0.1:{port}/", origin=f"https://127.0.0.1:{port}", subprotocols=[VERSION],  # type: ignore[arg-type, list-item]
+        ssl=context, compression=None, max_size=None, open_timeout=60,
     ) as websocket:  # fmt: skip
-        websocket.send(msgspec.msgpack.encode({"type": "ShareUrlRequest"}))
-        assert websocket.recv(timeout=60)
+        await websocket.send(msgspec.msgpack.encode({"type": "ShareUrlRequest"}))
+        async with asyncio.timeout(60):
+            return await websocket.recv()
 
 
 def test_the_cookie_is_for_tls_only(certificate: Certificate, open_house: Any) -> None:

@@ -266,7 +266,7 @@ def killed_recording(folder: Path, after_s: float) -> tuple[Path, int]:
     time.sleep(after_s)
     sender.send_signal(signal.SIGKILL)
     said = sender.stdout.read().split()
-    sender.wait(20)
+    sender.wait(120)
     return path, int(said[-1]) if said else 40
 
 

@@ -19,7 +19,7 @@ from app.outputs.senders import AXES_S, AxesSender, Outlet, PacketSender, addres
 def listening() -> Iterator[tuple[socket.socket, Outlet]]:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as ear:
         ear.bind(("127.0.0.1", 0))
-        ear.settimeout(5.0)
+        ear.settimeout(60.0)
         yield ear, Outlet(f"127.0.0.1:{ear.getsockname()[1]}", "--udp")
 
 

@@ -31,7 +31,9 @@ class Client:
 @contextmanager
 def client(port: int) -> Iterator[Client]:
     """One that viser takes for a page: it has said where its camera is."""
-    with connect(f"ws://127.0.0.1:{port}", subprotocols=["viser-v1.1.1"], max_size=None) as socket:  # type: ignore[list-item]
+    with connect(
+        f"ws://127.0.0.1:{port}", subprotocols=["viser-v1.1.1"], max_size=None, open_timeout=60
+    ) as socket:  # type: ignore[list-item]
         made = Client(socket)
         made.send(CAMERA)
         yield made

@@ -204,7 +204,7 @@ def test_a_taken_port_is_an_error(tmp_path: Path) -> None:
         port = str(taken.getsockname()[1])
         done = subprocess.run(
             [sys.executable, "-m", "app", "walk", "--no-open", "--port", port, "--source", SOURCE],
-            capture_output=True, text=True, timeout=110, env=environment(tmp_path), check=False,
+            capture_output=True, text=True, timeout=250, env=environment(tmp_path), check=False,
         )  # fmt: skip
     assert done.returncode == 2, done.stderr
     assert port in done.stderr

@@ -60,10 +60,10 @@ def test_two_feet_go_out_and_come_in(pylsl, name: str) -> None:
 def test_the_meta_data_are_those_that_others_read(pylsl, name: str) -> None:
     sender = LslSender(pylsl, name, 100.0)
     sender.send(walk(1)[0])
-    found = pylsl.resolve_byprop("name", f"{name}_left", timeout=20)
+    found = pylsl.resolve_byprop("name", f"{name}_left", timeout=60)
     assert len(found) == 1
     inlet = pylsl.StreamInlet(found[0])
-    info = inlet.info(timeout=20)
+    info = inlet.info(timeout=60)
     assert (info.type(), info.channel_count(), info.nominal_srate()) == ("IMU", 9, 100.0)
     assert info.get_channel_labels() == [f"{q}_{axis}" for q in ("acc", "gyr", "mag") for axis in "xyz"]
     assert info.get_channel_units() == ["m/s^2"] * 3 + ["rad/s"] * 3 + ["uT"] * 3
