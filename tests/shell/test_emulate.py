@@ -80,7 +80,7 @@ def test_unplugged_for_five_seconds() -> None:
 
 def test_a_brown_out_restarts_the_clock_and_nothing_breaks() -> None:
     source = "sim:walk?path=straight&strides=20&still_s=0.8&rate=100"
-    served = serve("xsens", "device=xsens&baud=115200", 115200, ("brownout=1@2.5",), source, enough=350)
+    served = serve("xsens", "device=xsens&baud=115200", 115200, ("brownout=3@2.5",), source, enough=350)
     assert is_in_order(served)
     gaps = [
         b.device_ns - a.device_ns for a, b in pairwise(served.samples) if b.device_ns - a.device_ns > GAP_NS
