@@ -98,9 +98,29 @@ def _is_prefix(head: str, rest: str) -> bool:
     return _LETTERS.fullmatch(head) is not None and number(rest.partition(",")[0]) is not None
 
 
+def word_before(line: str) -> str:
+    """The word with which a board begins lines of one kind, as ``IMU`` or ``$GPGGA``; empty without one."""
+    head = line.partition(",")[0]
+    return head if _LETTERS.fullmatch(head) else ""
+
+
 def are_words(cells: list[str]) -> bool:
     """Whether it can be a header: its first cell and five more begin with a letter."""
     return cells[0][:1].isalpha() and sum(cell[:1].isalpha() for cell in cells) >= 6
+
+
+def is_broken(cell: str) -> bool:
+    """Whether a cell was a number before it was damaged: a board's own word, as ``nan``, has no digit."""
+    return number(cell) is None and any(character.isdigit() for character in cell)
+
+
+def is_torn(line: str, cells: list[str], count: int) -> bool:
+    """Whether a line that fits no columns was a row of ``count`` cells before it was damaged.
+
+    What else a board prints, it says in words, or in JSON that can be read.
+    """
+    numbers = sum(number(cell) is not None for cell in cells)
+    return 2 * numbers >= count or (line.startswith("{") and cells == [])
 
 
 def named_cells(line: str) -> tuple[list[str], list[str]]:

@@ -20,6 +20,8 @@ from app.formats.wire.cells import (
     are_words,
     flat_object,
     force_unit,
+    is_broken,
+    is_torn,
     named_cells,
     nanoseconds,
     number,
@@ -27,6 +29,7 @@ from app.formats.wire.cells import (
     time_unit,
     triple,
     unwrapped,
+    word_before,
 )
 from app.formats.wire.columns import UNITS, Columns, find_columns, is_unit, spelt
 from app.formats.wire.decimals import Decimals
@@ -49,7 +52,7 @@ _TICKS_NS = {"s": 10**9, "sec": 10**9, "ms": 10**6, "us": 1000, "µs": 1000, "μ
 _NATIVE_COLUMNS = ["seq", "t", "ax", "ay", "az", "gx", "gy", "gz", "mx", "my", "mz"]
 _NATIVE_KEYS = {"acc": "force", "gyr": "rate", "mag": "field", "t": "time"}
 
-Row = tuple[Columns, list[str], int]  # its columns, cells and arrival
+Row = tuple[Columns, list[str], int, bytes]  # its columns, cells, arrival and line
 
 
 def frames() -> Frames:
@@ -112,10 +115,9 @@ class LinesDecoder:
     @property
     def temperature_c(self) -> float | None:
         """What the newest row says in a column named so, °C."""
-        columns, cells, _ = self._newest or (None, [], 0)
-        if columns is None or columns.temperature is None:
+        if self._newest is None or (place := self._newest[0].temperature) is None:
             return None
-        return believed(number(cells[columns.temperature]))
+        return believed(number(self._newest[1][place]))
 
     def feed(self, data: bytes, host_ns: int) -> list[Sample]:
         """The samples that ``data``, arrived at ``host_ns``, completes; a datagram of lines is such data."""
@@ -123,14 +125,15 @@ class LinesDecoder:
         for i, line in enumerate(self._frames.feed(data)):
             follows = self._line_seen and i not in self._frames.breaks
             self._line_seen = True
-            row = self._row(line.decode("utf-8", "replace").strip(), follows, host_ns)
+            row = self._row(line, follows, host_ns)
             if row is not None:
                 samples += self._take(row)
         return samples
 
     # --- a line into a row ---
 
-    def _row(self, line: str, follows: bool, host_ns: int) -> Row | None:
+    def _row(self, raw: bytes, follows: bool, host_ns: int) -> Row | None:
+        line = raw.decode("utf-8", "replace").strip()
         if not line:
             return None
         if line.startswith("{"):
@@ -141,7 +144,7 @@ class LinesDecoder:
         else:
             checked = unwrapped(line)
             if checked is None:
-                self.counters.bad_checksum += 1
+                self._frames.spoil(raw)
                 return None
             names, cells = named_cells(checked)
             if self._columns and len(cells) == self._columns.count + 1 and not cells[-1]:
@@ -151,10 +154,13 @@ class LinesDecoder:
                 self._columns, self._units, self._decimals = header, {}, Decimals()
                 return None
             if not follows or not checked.isascii():
-                self.counters.dropped += 1
+                if not self._is_torn(raw, line, cells):
+                    self.counters.dropped += 1
                 return None
         columns = self._by_name(tuple(names)) if names else self._columns
         if columns is None or len(cells) != columns.count:
+            if self._is_torn(raw, line, cells):
+                return None
             self.counters.unknown += 1
             if not self._columns and not names:
                 self._note(
@@ -162,9 +168,20 @@ class LinesDecoder:
                 )
             return None
         if not self._decimals.hold(cells):
-            self.counters.dropped += 1
+            self._frames.spoil(raw)
             return None
-        return columns, cells, host_ns
+        return columns, cells, host_ns, raw
+
+    def _is_torn(self, raw: bytes, line: str, cells: list[str]) -> bool:
+        """Whether it was a row before it was damaged, which is then counted."""
+        if self._newest is None:
+            return False
+        columns, _, _, sound = self._newest
+        alike = word_before(line) == word_before(sound.decode("ascii", "replace"))
+        torn = alike and is_torn(line, cells, columns.count)
+        if torn:
+            self._frames.spoil(raw)
+        return torn
 
     def _by_name(self, names: tuple[str, ...]) -> Columns | None:
         if names not in self._named:
@@ -211,7 +228,7 @@ class LinesDecoder:
         """All four units; None where the force at rest fits none."""
         units = {kind: unit for kind, unit in known.items() if is_unit(kind, unit)}
         if "force" not in units:
-            forces = [v for columns, cells, _ in kept if (v := triple(cells, columns.force)) is not None]
+            forces = [v for columns, cells, _, _ in kept if (v := triple(cells, columns.force)) is not None]
             unit = force_unit(median(math.hypot(*v) for v in forces)) if forces else None
             if unit is None:
                 self._note(
@@ -228,16 +245,19 @@ class LinesDecoder:
             self._note("magnetometer assumed in µT: its header does not say")
         if "time" not in units:
             units["time"] = time_unit(
-                [cells[columns.time] for columns, cells, _ in kept if columns.time is not None]
+                [cells[columns.time] for columns, cells, _, _ in kept if columns.time is not None]
             )
             self._note(f"time in {units['time']}: told by its steps")
         return units
 
     def _read(self, row: Row) -> list[Sample]:
-        columns, cells, host_ns = row
+        columns, cells, host_ns, _ = row
         force, rate = triple(cells, columns.force), triple(cells, columns.rate)
         field = None if columns.field is None else triple(cells, columns.field)
         sample = None
+        missing = force is None or rate is None or (field is None and columns.field is not None)
+        if missing and self._is_broken(row):
+            return []
         if force is not None and rate is not None:
             self._newest = row
             self._count_lost(columns, cells)
@@ -249,6 +269,14 @@ class LinesDecoder:
                 sample = self._maker.make(device_ns, host_ns, scaled(force, f), scaled(rate, w), field, 0, q)
         self.counters.dropped += sample is None
         return [] if sample is None else [sample]
+
+    def _is_broken(self, row: Row) -> bool:
+        """Whether a number of it was damaged, which is then counted."""
+        columns, cells, _, raw = row
+        broken = any(is_broken(cells[at]) for at in (*columns.force, *columns.rate, *(columns.field or ())))
+        if broken:
+            self._frames.spoil(raw)
+        return broken
 
     def _stamp(self, columns: Columns, cells: list[str], host_ns: int) -> int | None:
         if columns.time is None:

@@ -88,6 +88,14 @@ class Frames:
         counters.bytes_skipped = counters.bytes_fed - counters.bytes_good - counters.bytes_pending
         return packets
 
+    def spoil(self, packet: bytes) -> None:
+        """Count a packet that was given as one that did not hold: what stands in it says so."""
+        counters = self.counters
+        counters.packets -= 1
+        counters.bad_checksum += 1
+        counters.bytes_good -= len(packet)
+        counters.bytes_skipped += len(packet)
+
 
 def find_header(header: bytes) -> Find:
     """Where a fixed header begins, be it only its beginning at the very end of the bytes."""

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from app.formats.units import G_MPS2
-from app.formats.wire.lines import LinesDecoder
+from app.formats.wire.lines import LinesDecoder, LinesEncoder
 from app.motion.basics import InputError
 from app.motion.samples import Sample
 
@@ -144,7 +144,32 @@ def test_a_cell_that_is_no_number_costs_its_row(cell: str) -> None:
     decoder = LinesDecoder("foot")
     data = HEADER + f"1,{cell},0,1,0,0,90,20,0,-40\n".encode() + rows(1, start=10)
     assert len(decoder.feed(data, 0)) == 1
-    assert decoder.counters.dropped == 1
+    assert decoder.counters.dropped + decoder.counters.bad_checksum == 1
+
+
+@pytest.mark.parametrize("style", ["csv", "json"])
+@pytest.mark.parametrize("share", [0.0, 0.2])
+def test_damaged_lines_are_damage_and_what_else_a_board_says_is_none(style: str, share: float) -> None:
+    """A byte in a fifth of the rows becomes another, anywhere; beside them the board says how it fares."""
+    encoder, decoder = LinesEncoder(style=style), LinesDecoder("foot")
+    random = np.random.default_rng(5)
+    said = b'battery 3.9 V\n{"wifi":"connected","rssi":-60}\nGPS,1,2,3,4,5,6,7,8\n'
+    fed = hit = 0
+    for i in range(1000):
+        turn = tuple(np.sin(0.01 * i * np.arange(1, 4)))
+        sample = Sample("foot", i, i * 10_000_000, 0, (0.0, 0.0, -G_MPS2), turn, (20.0, 0.0, 40.0))
+        line = bytearray(encoder.encode(sample))
+        if i > 100 and random.random() < share:
+            line[random.integers(len(line) - 2)] = random.integers(32, 127)
+            hit += len(line)
+        line += said if i % 10 == 0 else b""
+        decoder.feed(bytes(line), i * 10_000_000)
+        fed += len(line)
+    counters = decoder.counters
+    assert counters.bytes_fed == fed == counters.bytes_good + counters.bytes_skipped
+    # of the bytes hit most were digits, and a digit that became another one cannot be told
+    assert 0.6 * hit <= counters.bytes_skipped <= hit
+    assert (counters.bad_checksum > 50) == bool(share)
 
 
 def test_empty_field_cells_are_no_field() -> None:
