@@ -33,6 +33,7 @@ from app.formats.wire.cells import (
 )
 from app.formats.wire.columns import UNITS, Columns, find_columns, is_unit, spelt
 from app.formats.wire.decimals import Decimals
+from app.formats.wire.layouts import Layouts
 from app.formats.wire.making import NED, Z_UP, Maker, Taker, scaled
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
@@ -101,6 +102,8 @@ class LinesDecoder:
         if columns is not None and self._columns is None:
             raise InputError(f"columns={columns}: expected names with ax,ay,az and gx,gy,gz among them")
         self._named: dict[tuple[str, ...], Columns | None] = {}
+        self._layouts = Layouts()
+        self._first: Row | None = None  # of a layout that is not believed yet
         self._line_seen = False
         self._units: dict[str, str] = {}  # settled
         self._factors = (1.0, 1.0, 1.0)
@@ -126,8 +129,8 @@ class LinesDecoder:
             follows = self._line_seen and i not in self._frames.breaks
             self._line_seen = True
             row = self._row(line, follows, host_ns)
-            if row is not None:
-                samples += self._take(row)
+            for each in self._agreed(row) if row is not None else ():
+                samples += self._take(each)
         return samples
 
     # --- a line into a row ---
@@ -199,6 +202,22 @@ class LinesDecoder:
             kind = _NATIVE_KEYS.get(key, "")
             if kind and is_unit(kind, spelt(unit)):
                 self._said.setdefault(kind, spelt(unit))
+
+    def _agreed(self, row: Row) -> list[Row]:
+        """The row, if its layout is believed, and before it the first of that layout, which was kept for it."""
+        columns, first = row[0], self._first
+        if columns is self._columns:  # a header's
+            return [row]
+        known = self._layouts.usual
+        if not self._layouts.fits(columns):
+            self._first = None if known else row
+            if known or first:
+                self._frames.spoil(row[3] if known or first is None else first[3])
+            return []
+        if self._layouts.usual is not known:
+            self._units = {}
+        self._first = None
+        return [row] if first is None else [first, row]
 
     # --- a row into a sample ---
 

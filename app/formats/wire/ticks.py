@@ -4,11 +4,21 @@ from __future__ import annotations
 
 from itertools import combinations
 from statistics import median
+from typing import NamedTuple
 
 from app.motion.samples import GAP_NS
 
-_SLACK_NS = 1_000_000_000  # a device step may exceed the host's by this before it is suspect
+_LEAP_NS = 100_000_000  # a device step may exceed the host's by this (and a usual step) before it is suspect
+_SLACK_NS = 1_000_000_000  # and by this before it is a restart: what was held up came at once
 _IN_A_ROW = 8  # stamps a little in the past: late datagrams, unless so many follow each other
+
+
+class _Reading(NamedTuple):
+    """A counter, when it arrived, and the time that it was taken for."""
+
+    ticks: int
+    host_ns: int
+    device_ns: int
 
 
 class DeviceClock:
@@ -16,44 +26,58 @@ class DeviceClock:
 
     A step that contradicts the host's clock is believed when the next stamp follows it: then the
     device restarted, and its time goes on at the host's pace, over a gap that no one integrates
-    across. Until then, and for repeated or late stamps, the reading is refused.
+    across. Until then, and for repeated or late stamps, the reading is refused. Where a stamp contradicts
+    the newest but follows the one before, the newest was damaged: the time goes on from the one before.
     """
 
     def __init__(self, tick_ns: int, bits: int) -> None:
         self.restarts = 0
         self._tick_ns = tick_ns
         self._wrap = 1 << bits
-        self._ticks = -1  # none yet
-        self._host_ns = 0
-        self._device_ns = 0
+        self._newest: _Reading | None = None
+        self._before: _Reading | None = None
+        self._given_ns = -1
+        self._usual_ns = _SLACK_NS  # the last step, or nobody knows
         self._odd_ticks = -1
         self._odd_in_a_row = 0
 
     def stamp(self, ticks: int, host_ns: int) -> int | None:
         """Device time of a counter that arrived at ``host_ns``; None: refuse the reading."""
-        if self._ticks < 0:
-            return self._take(ticks, host_ns, ticks * self._tick_ns)
-        host_step_ns = max(host_ns - self._host_ns, 0)
-        step_ns = self._step(ticks, self._ticks, host_step_ns) * self._tick_ns
-        if 0 < step_ns <= host_step_ns + _SLACK_NS:
-            return self._take(ticks, host_ns, self._device_ns + step_ns)
-        if step_ns == 0 or not self._believed(ticks, step_ns):
+        newest, before = self._newest, self._before
+        if newest is None:
+            return self._take(_Reading(ticks, host_ns, ticks * self._tick_ns))
+        host_step_ns = max(host_ns - newest.host_ns, 0)
+        step_ns = self._step_ns(ticks, newest.ticks, host_step_ns)
+        if 0 < step_ns <= host_step_ns + _LEAP_NS + self._usual_ns:
+            self._usual_ns = min(step_ns, _SLACK_NS)
+            return self._take(_Reading(ticks, host_ns, newest.device_ns + step_ns))
+        if step_ns == 0:
             return None
-        if step_ns > 0 and host_step_ns == 0:
-            return self._take(ticks, host_ns, self._device_ns + step_ns)  # a recorded stream, fed at once
+        if before is not None:
+            since_ns = self._step_ns(ticks, before.ticks, max(host_ns - before.host_ns, 0))
+            if 0 < since_ns <= host_ns - before.host_ns + _LEAP_NS:
+                self._newest, self._odd_ticks = before, -1
+                return self._take(_Reading(ticks, host_ns, before.device_ns + since_ns))
+        if not self._believed(ticks, step_ns):
+            return None
+        if 0 < step_ns and (host_step_ns == 0 or step_ns <= host_step_ns + _SLACK_NS):
+            return self._take(_Reading(ticks, host_ns, newest.device_ns + step_ns))  # much came at once
         self.restarts += 1
-        return self._take(ticks, host_ns, self._device_ns + max(host_step_ns, GAP_NS + 1))
+        return self._take(_Reading(ticks, host_ns, newest.device_ns + max(host_step_ns, GAP_NS + 1)))
 
-    def _take(self, ticks: int, host_ns: int, device_ns: int) -> int:
-        self._ticks, self._host_ns, self._device_ns = ticks, host_ns, device_ns
+    def _take(self, reading: _Reading) -> int | None:
+        self._newest, self._before = reading, self._newest
         self._odd_ticks, self._odd_in_a_row = -1, 0
-        return device_ns
+        if reading.device_ns <= self._given_ns:
+            return None
+        self._given_ns = reading.device_ns
+        return reading.device_ns
 
-    def _step(self, ticks: int, before: int, host_step_ns: int) -> int:
+    def _step_ns(self, ticks: int, before: int, host_step_ns: int) -> int:
         """The signed step nearest to what the host saw pass: silence may last longer than a wrap."""
         step = (ticks - before) % self._wrap
         expected = host_step_ns // self._tick_ns
-        return step + (expected - step + self._wrap // 2) // self._wrap * self._wrap
+        return (step + (expected - step + self._wrap // 2) // self._wrap * self._wrap) * self._tick_ns
 
     def _believed(self, ticks: int, step_ns: int) -> bool:
         follows = (

@@ -42,7 +42,7 @@ def test_a_header_says_columns_and_units() -> None:
         b"booting...\n\n# a comment\n" + HEADER + rows(2),
         HEADER + rows(2, form="IMU," + ROW),
         b"#moves,v1,foot=L,acc=g,gyr=dps,mag=uT,t=ms\n" + rows(2, form="7," + ROW),
-        rows(2, form="t_ms:{t},ax_g:0,ay_g:0,az_g:1,gx_dps:0,gy_dps:0,gz_dps:90\n"),
+        rows(3, form="t_ms:{t},ax_g:0,ay_g:0,az_g:1,gx_dps:0,gy_dps:0,gz_dps:90\n"),
         rows(2, form='{{"t_ms":{t},"az_g":1,"ax_g":0,"ay_g":0,"gx_dps":0,"gy_dps":0.0,"gz_dps":9e1}}\n'),
     ],
     ids=["tabs", "semicolons", "spaces", "trailing comma", "boot text", "prefix", "native", "pairs", "json"],
@@ -50,8 +50,8 @@ def test_a_header_says_columns_and_units() -> None:
 def test_every_manner_of_writing(text: bytes) -> None:
     decoder = LinesDecoder("foot")
     got = [s for i, line in enumerate(text.splitlines(keepends=True)) for s in decoder.feed(line, i)]
-    # a board that prints names with each value is believed from the second line on, for it has no header
-    assert len(got) == (1 if text.startswith(b"t_ms:") else 2)
+    # the first of a board's lines that name each value is not believed: a header would say where one begins
+    assert len(got) == 2
     assert all(map(rests_with_a_turn, got))
 
 
@@ -201,3 +201,34 @@ def test_many_layouts_are_not_remembered_for_ever() -> None:
     for i in range(500):
         decoder.feed(f'{{"a{i}":1}}\n'.encode(), 0)
     assert len(decoder._named) <= 16
+
+
+@pytest.mark.parametrize("damaged", [0, 7])
+@pytest.mark.parametrize(
+    ("key", "made"),
+    [("t_ms", "t_s"), ("t_ms", "x_ms"), ("ax_g", "ax_mg"), ("gx_dps", "gx_rads"), ("t_ms", "t")],
+)
+def test_a_damaged_name_changes_no_clock_and_no_unit(damaged: int, key: str, made: str) -> None:
+    form = '{{"t_ms":{t},"ax_g":0,"ay_g":0,"az_g":1,"gx_dps":0,"gy_dps":0,"gz_dps":90}}\n'
+    decoder = LinesDecoder("foot")
+    got = []
+    for i in range(40):
+        line = form.format(t=10 * i).replace(f'"{key}"', f'"{made if i == damaged else key}"')
+        got += decoder.feed(line.encode(), 70_000_000_000_000 + 10_000_000 * i)
+    assert all(map(rests_with_a_turn, got))
+    assert [sample.device_ns for sample in got] == [10_000_000 * i for i in range(40) if i != damaged]
+    assert decoder.counters.bad_checksum == 1
+
+
+def test_rows_may_leave_out_a_field_and_a_board_may_print_otherwise_from_now_on() -> None:
+    named = [
+        '{{"t_ms":{t},"ax_g":0,"ay_g":0,"az_g":1,"gx_dps":0,"gy_dps":0,"gz_dps":90}}\n',
+        '{{"t_ms":{t},"ax_g":0,"ay_g":0,"az_g":1,"gx_dps":0,"gy_dps":0,"gz_dps":90,"mx":1,"my":2,"mz":3}}\n',
+        '{{"t_ms":{t},"ax_mg":0,"ay_mg":0,"az_mg":1000,"gx_dps":0,"gy_dps":0,"gz_dps":90}}\n',
+    ]
+    decoder = LinesDecoder("foot")
+    forms = [named[i % 5 == 4] if i < 40 else named[2] for i in range(60)]
+    got = [s for i, form in enumerate(forms) for s in decoder.feed(form.format(t=10 * i).encode(), i)]
+    assert all(map(rests_with_a_turn, got))
+    assert [sample.field_b is not None for sample in got[:40]] == [i % 5 == 4 for i in range(40)]
+    assert [sample.device_ns // 10_000_000 for sample in got[40:]] == list(range(43, 60))

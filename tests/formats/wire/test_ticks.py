@@ -127,3 +127,27 @@ def test_a_silence_is_a_gap() -> None:
     clock = ArrivalClock(100.0)
     stamps = [clock.stamp(at * MS) for at in (0, 10, 20, 2020, 2030)]
     assert np.diff(stamps).tolist() == pytest.approx([10 * MS, 10 * MS, 2000 * MS, 10 * MS], abs=MS)
+
+
+@given(
+    start=st.integers(0, 1 << 40),
+    wild=st.lists(
+        st.tuples(st.integers(20, 380), st.integers(1, 2), st.integers(0, 1 << 41)), min_size=1, max_size=4
+    ),
+)
+def test_damaged_stamps_do_not_move_the_time_of_those_behind_them(
+    start: int, wild: list[tuple[int, int, int]]
+) -> None:
+    """One alone, or two in a row that follow each other, as where each lost the same digit."""
+    clock = DeviceClock(1000, 64)
+    told = [start + 10_000 * i for i in range(400)]
+    for place, count, wrong in wild:
+        for i in range(place, min(place + count, 400)):
+            told[i] = wrong + 10_000 * (i - place)
+    stamps = [clock.stamp(ticks, 10 * MS * i) for i, ticks in enumerate(told)]
+    given_ns = [stamp for stamp in stamps if stamp is not None]
+    assert given_ns == sorted(set(given_ns))
+    near = {i for place, _, _ in wild for i in range(place, place + 130)}
+    for i, stamp in enumerate(stamps):
+        if i not in near:
+            assert stamp == 1000 * start + 10 * MS * i
