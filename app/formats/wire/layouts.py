@@ -1,8 +1,8 @@
 """Heart: the layout of lines that name each value, so that a name that was damaged changes no column.
 
-A damaged ``t_us`` may read ``t_s``, or be no time at all: the row would be stamped by another clock. So a first
-layout is believed when the next row has it too, another one where it differs by what a row may leave out, or
-when it stays.
+A damaged ``t_us`` may read ``t_s``, or be no time at all: the row would be stamped by another clock. So a
+first layout is believed when the next row has it too, another one where it differs by what a row may leave
+out, or when it stays.
 """
 
 from __future__ import annotations

@@ -32,6 +32,7 @@ from app.formats.wire.cells import (
     word_before,
 )
 from app.formats.wire.columns import UNITS, Columns, find_columns, is_unit, spelt
+from app.formats.wire.counting import Count
 from app.formats.wire.decimals import Decimals
 from app.formats.wire.layouts import Layouts
 from app.formats.wire.making import NED, Z_UP, Maker, Taker, scaled
@@ -111,7 +112,7 @@ class LinesDecoder:
         self._clock: DeviceClock | None = None
         self._arrival = ArrivalClock(rate_hz)
         self._whole = False  # the clock counts whole milli- or microseconds
-        self._count: int | None = None
+        self._count = Count(32)
         self._decimals = Decimals()
         self._newest: Row | None = None
 
@@ -204,7 +205,7 @@ class LinesDecoder:
                 self._said.setdefault(kind, spelt(unit))
 
     def _agreed(self, row: Row) -> list[Row]:
-        """The row, if its layout is believed, and before it the first of that layout, which was kept for it."""
+        """The row, if its layout is believed, and before it the first of that layout, kept for it."""
         columns, first = row[0], self._first
         if columns is self._columns:  # a header's
             return [row]
@@ -314,10 +315,7 @@ class LinesDecoder:
     def _count_lost(self, columns: Columns, cells: list[str]) -> None:
         if columns.seq is None or not (cells[columns.seq].isascii() and cells[columns.seq].isdigit()):
             return
-        count = int(cells[columns.seq][:20])
-        if self._count is not None and 0 < count - self._count < 1 << 16:
-            self.counters.lost += count - self._count - 1
-        self._count = count
+        self.counters.lost += self._count.missing(int(cells[columns.seq][:20]))
 
     def _note(self, sentence: str) -> None:
         if sentence not in self.notes:

@@ -17,6 +17,8 @@ BAUDS = (115200, 921600)
 BASE_HZ = 400
 _FIELD_HZ = 20.0
 _LONGEST = 1024
+#: So often it is asked who it is, until two answers agree.
+PINGS = 10
 
 
 @dataclass(frozen=True)
@@ -31,9 +33,7 @@ class Ximu3Setup:
 
 def start_up(rate_hz: float = 400.0) -> Script[Ximu3Setup]:
     """Ping, and an inertial rate near ``rate_hz``: 400 Hz over a whole number."""
-    who = _value((yield _ask("ping", None, "waiting for an x-IMU3")), "ping")
-    if not isinstance(who, dict):
-        raise RefusedError("no x-IMU3 answers: check the port or address, and its power")
+    who = yield from _who()
     divisor = min(max(round(BASE_HZ / rate_hz), 1), BASE_HZ)
     for key in ("inertialMessageRateDivisor", "ahrsMessageRateDivisor"):
         yield _ask(key, divisor, f"choosing {BASE_HZ / divisor:g} Hz")
@@ -41,6 +41,23 @@ def start_up(rate_hz: float = 400.0) -> Script[Ximu3Setup]:
     name = who.get("deviceName", who.get("name", ""))
     serial = who.get("serialNumber", who.get("sn", ""))
     return Ximu3Setup(str(name), str(serial), BASE_HZ / divisor)
+
+
+def _who() -> Script[dict[str, object]]:
+    """What it says of itself, twice the same: a line without a checksum may be damaged and read well."""
+    seen: list[dict[str, object]] = []
+    for _ in range(PINGS):
+        answer = yield _ask("ping", None, "waiting for an x-IMU3")
+        if answer is None:
+            break
+        who = _value(answer, "ping")
+        if isinstance(who, dict):
+            if who in seen:
+                return who
+            seen.append(who)
+    if not seen:
+        raise RefusedError("no x-IMU3 answers: check the port or address, and its power")
+    return {}
 
 
 def command(key: str, value: object) -> bytes:

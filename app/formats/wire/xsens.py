@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 from app.formats.mounting import Axes
 from app.formats.saturation import RANGES, Range
+from app.formats.wire.counting import Count
 from app.formats.wire.making import ENU, NED, NWU, Z_UP, Maker, Taker
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_header
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
@@ -106,7 +107,7 @@ class XsensDecoder:
         self._maker = Maker(sensor, axes, self.setup.full_scale)
         self._clock: DeviceClock | None = None
         self._arrival = ArrivalClock(self.setup.rate_hz)
-        self._count: int | None = None
+        self._count = Count(16)
         self._warmth = (0, b"")
 
     @property
@@ -150,13 +151,8 @@ class XsensDecoder:
 
     def _count_lost(self, items: dict[int, tuple[int, bytes]]) -> None:
         _, data = items.get(PACKET_COUNTER, (0, b""))
-        if len(data) != 2:
-            return
-        count = int.from_bytes(data)
-        if self._count is not None:
-            missing = (count - self._count - 1) & 0xFFFF
-            self.counters.lost += missing if missing < 0x8000 else 0  # else it restarted
-        self._count = count
+        if len(data) == 2:
+            self.counters.lost += self._count.missing(int.from_bytes(data))
 
 
 def _items(data: bytes) -> dict[int, tuple[int, bytes]]:

@@ -31,6 +31,8 @@ BAUDS = (115200, 921600, 460800, 230400)
 GO_TO_CONFIG, GO_TO_MEASUREMENT, RESET, WAKE_UP, WAKE_UP_ACK = 0x30, 0x10, 0x40, 0x3E, 0x3F
 REQ_DID, REQ_FIRMWARE, REQ_PRODUCT, SET_OUTPUT, ERROR = 0x00, 0x12, 0x1C, 0xC0, 0x42
 _EVERY = 0xFFFF
+#: On a line that damages one byte in a hundred, one answer in four is.
+TRIES = 6
 
 
 # --- starting a sensor ---------------------------------------------------------------------------
@@ -65,7 +67,7 @@ def start_up(rate_hz: float = 100.0) -> Script[XsensSetup]:
 
 
 def _ask(mid: int, data: bytes, what: str) -> Ask:
-    return Ask(message(mid, data), what, answer(mid + 1), 0.5)
+    return Ask(message(mid, data), what, answer(mid + 1), 0.5, TRIES)
 
 
 def answer(mid: int) -> FindAnswer:

@@ -14,6 +14,7 @@ from app.formats.mounting import AS_GIVEN, Axes, rotation
 from app.formats.units import G_MPS2
 from app.formats.wire import gx1, lines, mip, ngimu, witmotion, ximu3, xsens
 from app.formats.wire.catalogue import Decoder, Model
+from app.formats.wire.faults import Line
 from app.formats.wire.making import Z_UP
 from app.formats.wire.talk import Script, Talk
 from app.motion.basics import Quaternion, Vector
@@ -248,8 +249,18 @@ def readings(samples: list[Sample]) -> list[tuple[Any, ...]]:
     return [(s.specific_force_b, s.angular_rate_b) for s in samples]
 
 
-def converse(script: Script[Any], model: Model, samples: Iterable[Sample] = (), lost: int = 0) -> Talk[Any]:
-    """A start-up against a device that goes on measuring; its first ``lost`` answers never arrive."""
+def converse(
+    script: Script[Any],
+    model: Model,
+    samples: Iterable[Sample] = (),
+    lost: int = 0,
+    line: Line | None = None,
+) -> Talk[Any]:
+    """A start-up against a device that goes on measuring; its first ``lost`` answers never arrive.
+
+    What it sends comes by ``line``.
+    """
+    carry = line.carry if line else bytes
     talk, waiting = Talk(script), iter(samples)
     for _ in range(400):
         if talk.ask is None:
@@ -258,7 +269,7 @@ def converse(script: Script[Any], model: Model, samples: Iterable[Sample] = (), 
         if answer and lost:
             lost, answer = lost - 1, b""
         streamed = b"".join(model.measure(sample) for sample in itertools.islice(waiting, 3))
-        if not talk.receive(streamed + answer):
+        if not talk.receive(carry(streamed + answer)):
             talk.expire()
     raise AssertionError("the conversation never ends")
 
