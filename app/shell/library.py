@@ -13,6 +13,7 @@ from app.formats import mcap
 from app.formats.kept import Kept, kept, lost_seqs
 from app.formats.recover import Recovered
 from app.formats.recover import recover as recovered
+from app.motion.basics import Role
 from app.motion.recording import Journal, Recording
 from app.motion.samples import GAP_NS, Samples
 from app.outputs.files import beside, write_new
@@ -109,6 +110,11 @@ def _temperatures(journal: Journal) -> dict[str, dict[str, float]]:
     }
 
 
+def _named(sensor: str, role: str) -> str:
+    """A sensor, and which foot a tap or its source said it is on, where its name does not."""
+    return sensor if role in (sensor, Role.OTHER.value) else f"{sensor} ({role})"
+
+
 def lines(told: dict[str, Any]) -> list[str]:
     """The same for a person."""
     text = [f"{told['recording']} ({told['format']}): {told['duration_s']:.1f} s"]
@@ -119,7 +125,7 @@ def lines(told: dict[str, Any]) -> list[str]:
         dropped = sum(figures["dropped"].values())
         why = f" ({', '.join(figures['dropped'])})" if dropped else ""
         text.append(
-            f"  {sensor}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
+            f"  {_named(sensor, figures['role'])}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
             f" {dropped} dropped{why}, {figures['saturated']} saturated{gaps}{_warmth(told, sensor)}"
         )
     text += [f"  {sentence}" for sentence in told["assumed"]]

@@ -9,6 +9,7 @@ from typing import Any
 
 import msgspec
 from websockets.sync.client import connect
+from websockets.typing import Subprotocol
 
 CAMERA = {
     "type": "ViewerCameraMessage", "wxyz": (1.0, 0.0, 0.0, 0.0), "position": (1.0, 1.0, 1.0), "fov": 0.7,
@@ -31,9 +32,9 @@ class Client:
 @contextmanager
 def client(port: int) -> Iterator[Client]:
     """One that viser takes for a page: it has said where its camera is."""
-    with connect(
-        f"ws://127.0.0.1:{port}", subprotocols=["viser-v1.1.1"], max_size=None, open_timeout=60
-    ) as socket:  # type: ignore[list-item]
+    spoken = [Subprotocol("viser-v1.1.1")]
+    address = f"ws://127.0.0.1:{port}"
+    with connect(address, subprotocols=spoken, max_size=None, open_timeout=60) as socket:
         made = Client(socket)
         made.send(CAMERA)
         yield made

@@ -8,7 +8,9 @@ from pathlib import Path
 import pytest
 
 from app.__main__ import main
-from tests.formats.walks import random_samples, write
+from app.formats.keeping import Keeper
+from app.motion.basics import Role
+from tests.formats.walks import CLOCK_NS, random_samples, write
 
 
 @pytest.fixture
@@ -50,6 +52,21 @@ def test_info_tells_all_of_a_recording(tmp_path: Path, capsys) -> None:
     assert told["closed"] is True
     assert main(["info", str(path)]) == 0
     assert "50 samples at 100.0 Hz" in capsys.readouterr().out
+
+
+def test_info_says_which_foot_a_tap_named(tmp_path: Path, capsys) -> None:
+    made = Keeper({}, {"phone": Role.OTHER, "left": Role.LEFT}, CLOCK_NS)
+    data = made.begin(0)
+    for i, sample in enumerate(random_samples(40)):
+        made.sample(sample._replace(sensor="left" if i % 2 else "phone"))
+    data += made.chunk()
+    made.learnt(10**9, {"sensors": {"phone": "right", "left": "left"}})
+    path = tmp_path / "walk.mcap"
+    path.write_bytes(data + made.end())
+    assert main(["info", str(path)]) == 0
+    told = capsys.readouterr().out
+    assert "phone (right): 20 samples" in told
+    assert "left: 20 samples" in told
 
 
 def test_info_tells_of_any_recording(capsys) -> None:
