@@ -13,7 +13,7 @@ from app.formats import mcap
 from app.formats.kept import Kept, kept, lost_seqs
 from app.formats.recover import Recovered
 from app.formats.recover import recover as recovered
-from app.motion.basics import Role
+from app.motion.basics import Floats, Role
 from app.motion.recording import Journal, Recording
 from app.motion.samples import GAP_NS, Samples
 from app.outputs.files import beside, write_new
@@ -54,20 +54,31 @@ def _sensor(samples: Samples) -> dict[str, Any]:
     return {
         "role": samples.role.value,
         "samples": len(samples),
-        "rate_hz": samples.rate_hz,
         "dropped": dict(samples.dropped),
         "saturated": int((samples.saturation != 0).sum()),
     } | _missing(samples)
 
 
 def _missing(samples: Samples) -> dict[str, int | float]:
-    """What the stamps tell that there is not: samples missing between two, and gaps that part segments."""
+    """What the stamps tell: the rate, samples missing between two, and gaps that part segments."""
     steps_ns = np.diff(samples.matrix[:, 0])
-    usual_ns = float(np.median(steps_ns)) if len(steps_ns) else 0.0
+    usual_ns = _usual_ns(steps_ns) if len(steps_ns) else 0.0
     gaps = steps_ns > GAP_NS
     short = steps_ns[~gaps & (steps_ns > 1.5 * usual_ns)]
     missing = int((np.round(short / usual_ns) - 1.0).sum()) if len(short) else 0
-    return {"missing": missing, "gaps": int(gaps.sum()), "gaps_s": float(steps_ns[gaps].sum()) * 1e-9}
+    rate = {"rate_hz": 1e9 / usual_ns if usual_ns else 0.0}
+    return rate | {"missing": missing, "gaps": int(gaps.sum()), "gaps_s": float(steps_ns[gaps].sum()) * 1e-9}
+
+
+def _usual_ns(steps_ns: Floats) -> float:
+    """From one sample to the next: where more than half of them are missing, a part of the median."""
+    median_ns = float(np.median(steps_ns))
+    for parts in (4, 3, 2):
+        steps = steps_ns * parts / median_ns
+        whole = np.abs(steps - np.round(steps)) < 0.1
+        if whole.mean() > 0.9 and (np.round(steps) == 1.0).mean() > 0.1:
+            return median_ns / parts
+    return median_ns
 
 
 def _ours(recording: Recording, found: Kept) -> dict[str, Any]:
@@ -124,8 +135,9 @@ def lines(told: dict[str, Any]) -> list[str]:
         gaps = f", {count} gap{'s' * (count > 1)} of {figures['gaps_s']:.1f} s" if count else ""
         dropped = sum(figures["dropped"].values())
         why = f" ({', '.join(figures['dropped'])})" if dropped else ""
+        name = _named(sensor, figures["role"])
         text.append(
-            f"  {_named(sensor, figures['role'])}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
+            f"  {name}: {figures['samples']} samples at {figures['rate_hz']:.1f} Hz, {lost} lost,"
             f" {dropped} dropped{why}, {figures['saturated']} saturated{gaps}{_warmth(told, sensor)}"
         )
     text += [f"  {sentence}" for sentence in told["assumed"]]

@@ -5,11 +5,13 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from app.__main__ import main
 from app.formats.keeping import Keeper
 from app.motion.basics import Role
+from app.shell.library import info
 from tests.formats.walks import CLOCK_NS, random_samples, write
 
 
@@ -67,6 +69,24 @@ def test_info_says_which_foot_a_tap_named(tmp_path: Path, capsys) -> None:
     told = capsys.readouterr().out
     assert "phone (right): 20 samples" in told
     assert "left: 20 samples" in told
+
+
+@pytest.mark.parametrize("share", [0.0, 0.1, 0.5, 0.65])
+@pytest.mark.parametrize("jitter_ms", [0.0, 1.5])
+def test_info_counts_what_is_missing_between_stamps(share: float, jitter_ms: float, tmp_path: Path) -> None:
+    """Also where more than half is; of stamps that tremble no step is certain, but none is invented."""
+    random = np.random.default_rng(3)
+    came = [i for i in range(2000) if i in (0, 1999) or random.random() >= share]
+    rows = [f"{0.01 * i + random.uniform(-1, 1) * jitter_ms / 1000:.6f},foot,0,0,-9.8,0,0,0,,," for i in came]
+    header = "t_s,foot,fx_mps2,fy_mps2,fz_mps2,wx_radps,wy_radps,wz_radps,mx_gauss,my_gauss,mz_gauss"
+    path = tmp_path / "walk.csv"
+    path.write_text("\n".join([header, *rows]) + "\n")
+    told = info(str(path))["sensors"]["foot"]
+    if jitter_ms and share:
+        assert told["missing"] <= 2000 - len(came) + 100
+    else:
+        assert told["missing"] == 2000 - len(came)
+        assert told["rate_hz"] == pytest.approx(100.0, rel=0.01)
 
 
 def test_info_tells_of_any_recording(capsys) -> None:
