@@ -5,6 +5,7 @@ const RADIANS = Math.PI / 180, GRAVITY = 9.80665;
 const STILL_READINGS = 30;      // half a second: by these the sign of the force is told
 const MOST_KEPT = 36000;        // ten minutes at 60 a second
 const MOST_IN_ONE = 100;
+const MOST_SET_MS = 1000;       // by less the clock on the wall was set, not the phone asleep
 // Toe, right and down as axes of the phone: 1 x (right edge), 2 y (top edge), 3 z (out of the screen); minus: the other way.
 const SEATS = {toe: [2, 1, -3], heel: [-2, -1, -3], "left side": [2, -3, -1], "right side": [2, 3, 1]};
 
@@ -46,10 +47,18 @@ function reading(event) {
   return {f: [a.x, a.y, a.z], w: [r.alpha, r.beta, r.gamma].map(n => n * RADIANS)};
 }
 
+// A locked phone may stop the clock of its events: what the clock on its wall went on meanwhile, ms.
+function slept() {
+  const behind = Date.now() - performance.now();
+  if (behind - run.behind > MOST_SET_MS) run.slept += behind - run.behind;
+  run.behind = behind;
+  return run.slept;
+}
+
 function onMotion(event) {
   if (!run) return;
   const raw = reading(event);
-  const stamp = Math.round(event.timeStamp * 1e6);
+  const stamp = Math.round((event.timeStamp + slept()) * 1e6);
   if (!raw) {
     if (!run.count) show("bad", "This phone has no accelerometer or no gyroscope that a page can read.");
     return;
@@ -157,6 +166,7 @@ async function start() {
     session: Array.from(random, n => n.toString(16).padStart(8, "0")).join(""), sensor: chosen("foot"), seat: chosen("seat"),
     stamp: -1, count: 0, still: [], misfit: false, sign: 0, force: null, kept: [], first: 0, sent: 0, flying: [],
     delivered: 0, refusal: "", away: false, wait: 200, link: null, since: performance.now(),
+    slept: 0, behind: Date.now() - performance.now(),
   };
   show("", "Waiting for the first reading…");
   window.addEventListener("devicemotion", onMotion);

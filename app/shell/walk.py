@@ -40,6 +40,7 @@ class Walk:
         self.before = Before(lambda: source.info, taping.preflight)
         self.remembering = Remembering(lambda: source.info, self.before.calibrated)
         self.last_sample_s = time.monotonic()
+        self._came = 0  # samples
         self._taping = taping
         self._early = Early(self._take_waiting)
         info = source.info
@@ -108,7 +109,7 @@ class Walk:
     def health(self) -> dict[str, object]:
         """For /healthz; read on the door's thread, so only what is one read."""
         line = {sensor: vars(counters) for sensor, counters in self.source.counters.items()}
-        return {"link": self.source.link.value, "taken": self.session.number + len(self._early), "line": line}
+        return {"link": self.source.link.value, "taken": self._came, "line": line}
 
     async def read(
         self,
@@ -157,6 +158,7 @@ class Walk:
 
     def _recorded(self, sample: Sample) -> Sample:
         """The sample as it is taken, on the disk."""
+        self._came += 1
         sample = self.before.sample(sample)
         if (known := self.remembering.order(sample.sensor)) is not None:
             self.apply(known)
@@ -185,6 +187,7 @@ class Walk:
         """Show a far place at once; a recording of it wants every sample."""
         if self._taping.on or self.before.wants_each or not self.session.land(landing):
             return False
+        self._came += len(landing)
         self.last_sample_s = time.monotonic()
         return True
 
@@ -194,6 +197,7 @@ class Walk:
                 self._take_sample(sample)
             changed()
         else:
+            self._came += len(stretch)
             self.session.take_stretch(stretch)
             self.last_sample_s = time.monotonic()
             changed()

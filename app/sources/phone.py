@@ -10,6 +10,7 @@ from app.formats.wire.message import Malformed
 from app.formats.wire.reply import Ack, encode_ack, encode_refusal
 from app.formats.wire.sensorlogger import MOST_PHONES, Phone, parse, sensor_and_axes
 from app.motion.basics import InputError
+from app.motion.source import Link
 from app.sources.inbox import Inbox
 from app.sources.listening import options_of
 from app.sources.spec import Spec
@@ -76,6 +77,8 @@ class PhoneSource(Inbox):
     @property
     def detail(self) -> str:
         """How a phone gets here."""
+        if self.link is Link.LOST:
+            return "the phone sends no more: unlock it, its page goes on; or scan the code below anew"
         return "" if self.silent_s is not None else "no phone yet: scan the code below with it"
 
     def _told(self) -> list[str]:

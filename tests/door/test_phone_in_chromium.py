@@ -109,9 +109,16 @@ def test_a_phone_on_the_left_shoe_walks(
         page.evaluate(IPHONE, "granted")
     page.get_by_label("Left", exact=True).check()
     page.get_by_role("button").click()
+    thread, got = reading(source, 300)
     page.evaluate(SENSOR, [sign, "z"])
-    got = read(source, 200)
+    while len(got) < 200 and thread.is_alive():
+        page.wait_for_timeout(50)
+    page.evaluate("() => { const now = Date.now; Date.now = () => now() + 30_000; }")  # it was locked
+    thread.join()
     check_numbers(got)
+    gaps_s = [(b.device_ns - a.device_ns) * 1e-9 for a, b in itertools.pairwise(got)]
+    assert sum(gap > 10.0 for gap in gaps_s) == 1, "a phone that slept goes on behind a gap"
+    assert max(gaps_s) == pytest.approx(30.0, abs=10.0)
     session = Session(Settings(), role_of)
     for sample in got:
         session.take(sample)

@@ -135,10 +135,11 @@ def test_the_walk_has_it_later_in_the_order_of_the_recording(tmp_path: Path) -> 
                 now.walk.apply(Order(command, "me", 1))
             assert not now.walk.session.log
             await now.send(SAMPLES[third : 2 * third])
+            assert now.taken == 2 * third, "orders are no samples"
             now.compiled.set()
             await now.until(lambda: not now.walk.behind)
             await now.send(SAMPLES[2 * third :])
-            assert now.walk.session.number == now.taken == len(SAMPLES) + 2
+            assert (now.walk.session.number, now.taken) == (len(SAMPLES) + 2, len(SAMPLES))
             settle(now.walk.session)
             return now.walk.session
 

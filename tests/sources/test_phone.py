@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import time
 
 import pytest
 from hypothesis import given
@@ -87,6 +88,12 @@ def test_anything_is_answered(data: bytes | str) -> None:
 def test_only_the_walks_page_has_a_door_for_it() -> None:
     source = open_source("phone:")
     assert "scan" in source.detail
+    assert isinstance(source, PhoneSource)
+    source.take(encode_json(1, walk(5)))
+    assert (source.link, source.detail) == (Link.LIVE, "")
+    while source.link is not Link.LOST:
+        time.sleep(0.1)
+    assert "unlock it" in source.detail
     with pytest.raises(InputError, match="expected"):
         open_source("phone:9000")
     with pytest.raises(InputError, match="expected one of"):
