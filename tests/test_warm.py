@@ -8,6 +8,9 @@ import sys
 
 import pytest
 
+from app.estimator.methods import METHODS
+from app.warm import warm_up
+
 #: A walk's kernels, and the kinds of arrays they were compiled for, beyond the prepared ones.
 WALK = """
 import json, sys
@@ -43,3 +46,30 @@ def test_a_walk_compiles_nothing_that_was_not_prepared(estimator: str) -> None:
     command = [sys.executable, "-c", WALK, estimator, *SPECS]
     ran = subprocess.run(command, capture_output=True, text=True, timeout=400, check=True)
     assert json.loads(ran.stdout) == []
+
+
+#: The kernels that a start had to compile though another start has kept its own.
+MISSED = """
+import json, sys
+from app.estimator.methods import METHODS
+from app.warm import warm_up
+
+for estimator in METHODS:
+    warm_up(estimator)
+things = [x for name, m in list(sys.modules.items()) if name.startswith("app.") for x in vars(m).values()]
+kernels = [thing for thing in things if hasattr(thing, "nopython_signatures")]
+missed = {f"{x.__module__}.{x.__name__}" for x in kernels if x.stats.cache_misses}
+print(json.dumps([len(kernels), sorted(missed)]))
+"""
+
+
+@pytest.mark.timeout(420)
+def test_a_second_start_compiles_nothing_at_all() -> None:
+    for estimator in METHODS:
+        warm_up(estimator)
+    ran = subprocess.run(
+        [sys.executable, "-c", MISSED], capture_output=True, text=True, timeout=400, check=True
+    )
+    kernels, missed = json.loads(ran.stdout)
+    assert kernels > 4
+    assert missed == []
