@@ -7,8 +7,8 @@ from collections.abc import Callable, Iterator
 import numpy as np
 
 from app.blocks import Blocks
+from app.estimator import events as e
 from app.estimator.compass import FOOTPRINTS, CompassWatch
-from app.estimator.corrections import EVENT_WIDTH
 from app.estimator.methods import METHODS
 from app.estimator.smoother import smooth
 from app.estimator.strides import Contact, lift_above_line, stride_to
@@ -40,7 +40,7 @@ def parts(estimator: str) -> Iterator[tuple[str, Callable[[], None]]]:
     The other estimator is compiled when somebody first asks for it, by the worker that re-estimates.
     """
     samples = still_samples()
-    rows, event = np.zeros((1, ROW_WIDTH)), np.zeros(EVENT_WIDTH)
+    rows, event = np.zeros((1, ROW_WIDTH)), np.zeros(e.WIDTH)
     rows[0, 6] = 1.0
 
     def orientations() -> None:

@@ -17,7 +17,7 @@ from typing import NamedTuple
 import numpy as np
 
 from app.blocks import Blocks
-from app.estimator.kalman_state import turn_about_down
+from app.estimator.kalman_state import turn_walk
 from app.estimator.together import BESIDE_M, BOUND_M, OF_A_STRIDE, START_RAD, TOO_FAR_M, WANDER_RADPS
 from app.estimator.tracker import Tracker
 from app.estimator.turns import turned, turned_attitude
@@ -116,10 +116,9 @@ def turns_of(both: tuple[Foot, Foot], apart_m: float) -> tuple[Turning, Turning]
         for side, (whole, sign) in enumerate(zip(steps, (1.0, -1.0), strict=True)):
             step = whole[:count]
             yaw = shape @ x[side * parts : (side + 1) * parts] + (first if side else 0.0)
-            c, s = np.cos(yaw), np.sin(yaw)
-            turned = np.column_stack([c * step[:, 0] - s * step[:, 1], s * step[:, 0] + c * step[:, 1]])
-            away = away + sign * np.cumsum(turned, axis=0)
-            aside = np.column_stack([-turned[:, 1], turned[:, 0]])
+            moved = turned(step, yaw)
+            away = away + sign * np.cumsum(moved, axis=0)
+            aside = np.column_stack([-moved[:, 1], moved[:, 0]])
             slopes.append(sign * np.cumsum(aside[:, None, :] * shape[:, :, None], axis=0))
         far = np.maximum(np.hypot(away[:, 0], away[:, 1]), 1e-9)
         over = np.maximum(far - bound_m[:count], 0.0) / BOUND_M
@@ -220,7 +219,7 @@ def turn(foot: Foot, turns: Turning) -> None:
         rows[:, 6:10] = turned_attitude(rows[:, 6:10], yaw)
     _turn_strides(foot, turns)
     state = tracker.state[0]
-    turn_about_down(state, float(np.interp(foot.t_s[-1], turns.t_s, turns.yaw_rad)))
+    turn_walk(state, float(np.interp(foot.t_s[-1], turns.t_s, turns.yaw_rad)))
     away = (float(place[0] - state["px"]), float(place[1] - state["py"]))
     for name in ("p", "from_", "at_", "start_"):
         state[f"{name}x"], state[f"{name}y"] = state[f"{name}x"] + away[0], state[f"{name}y"] + away[1]

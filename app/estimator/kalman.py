@@ -55,7 +55,7 @@ FORCE_NOISE, RATE_NOISE = 0.05, 5e-4
 RATE_SHARE = 2e-4
 #: What happens between two samples is not seen: σ of a velocity as a share of the force's jump times Δt.
 JUMP_NOISE = 0.2
-#: A foot does not roll just as it is thought to: σ of its height for a turn (m·√s a rad/s: m/√s … of it).
+#: A foot does not roll just as it is thought to: σ of its height, m/√s for each rad/s of its rate.
 PIVOT_NOISE = 0.01
 #: How the biases wander: (m/s²)/√s and (rad/s)/√s.
 FORCE_WANDER, RATE_WANDER = 1e-4, 1e-6

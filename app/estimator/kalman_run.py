@@ -8,77 +8,47 @@ contact is the cubic that joins them (a Wiener process bridged twice), and the a
 from __future__ import annotations
 
 from app.compiled import kernel, part
+from app.estimator import events as e
 from app.estimator import state as s
-from app.estimator.corrections import Event
 from app.estimator.gait import STANCE, SWING
 from app.estimator.kalman import step
 from app.estimator.kalman_state import RING, RING_P, RING_Q, KalmanState
-from app.estimator.papers import reading_at
+from app.estimator.running import run_of
 from app.estimator.state import Record
 from app.motion.basics import Floats, Quaternion
 from app.rotation import exponential, multiply, normalise
 
-_MOVED, _START, _END = int(Event.EPSILON), int(Event.START), int(Event.END)
-_SLOWED, _TURNED = int(Event.SLOWED), int(Event.TURNED)
 #: √T as an angular rate in rad/s, so that the graph's unit stays.
 AS_RATE = 0.1
 
 
-@kernel
-def run(
-    state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats
-) -> tuple[int, int]:
-    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 13].
-
-    Stops early when ``events`` [m, 22] is full. Returns the next sample's place and the events' count.
-    """
-    now = state[0]
-    count = 0
-    for i in range(begin, end):
-        if count == events.shape[0]:
-            return i, count
-        reading = reading_at(samples, i)
-        happened = step(now, reading)
-        rows[i, 0], rows[i, 1], rows[i, 2] = now.px, now.py, now.pz
-        rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz
-        rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = now.q0, now.q1, now.q2, now.q3
-        rows[i, 10] = now.phase
-        rows[i, 11], rows[i, 12] = AS_RATE * now.statistic**0.5, AS_RATE * now.threshold**0.5
-        if happened & s.REPORTED:
-            write_event(events[count], now, happened)
-            count += keep_event(events[count], rows[: i + 1], samples[: i + 1], state)
-    return end, count
+@part
+def write_row(rows: Floats, i: int, now: KalmanState) -> None:
+    """What is known now; a swing's rows are corrected when it is over."""
+    rows[i, 0], rows[i, 1], rows[i, 2] = now.px, now.py, now.pz
+    rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz
+    rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = now.q0, now.q1, now.q2, now.q3
+    rows[i, 10] = now.phase
+    rows[i, 11], rows[i, 12] = AS_RATE * now.statistic**0.5, AS_RATE * now.threshold**0.5
 
 
 @part
 def write_event(event: Floats, now: KalmanState, happened: int) -> None:
-    """Which rows change, and by what, in the columns of ``Event``."""
-    event[0], event[1], event[2], event[3] = happened, now.done_lift_row, now.done_contact_row, now.row - 1.0
-    event[4], event[5] = now.done_lift_ns, now.done_swing_s
-    event[_MOVED] = now.corrected_x - now.before_x
-    event[_MOVED + 1] = now.corrected_y - now.before_y
-    event[_MOVED + 2] = now.corrected_z - now.before_z
-    event[15] = 0.0
-    event[_START], event[_START + 1], event[_START + 2] = now.start_x, now.start_y, now.start_z
-    event[_END] = now.at_x + now.corrected_x
-    event[_END + 1] = now.at_y + now.corrected_y
-    event[_END + 2] = now.at_z + now.corrected_z
-    event[_SLOWED], event[_SLOWED + 1], event[_SLOWED + 2] = now.slowed_x, now.slowed_y, now.slowed_z
-    event[_TURNED] = now.turned_x - now.unturned_x
-    event[_TURNED + 1] = now.turned_y - now.unturned_y
-    event[_TURNED + 2] = now.turned_z - now.unturned_z
-
-
-@part
-def keep_event(event: Floats, rows: Floats, samples: Floats, state: Record) -> int:
-    """Apply an event whose rows are all here, the last of them just made; 1 if more than that is to do."""
-    first = int(event[3]) - rows.shape[0] + 1  # the number of row 0
-    begin = int(event[1]) + 1 - first
-    if begin < 0:
-        return 1
-    correct(rows[begin:], first + begin, samples[begin:], event, state)
-    event[15] = 1.0
-    return 1 if int(event[0]) & (s.STRIDE | s.SEGMENT) else 0
+    """Which rows change, and by what, in the columns of ``events.py``."""
+    event[e.HAPPENED], event[e.ROW] = happened, now.row - 1.0
+    event[e.LIFT_ROW], event[e.CONTACT_ROW] = now.done_lift_row, now.done_contact_row
+    event[e.LIFT_NS], event[e.SWING_S] = now.done_lift_ns, now.done_swing_s
+    event[e.MOVED] = now.corrected_x - now.before_x
+    event[e.MOVED + 1] = now.corrected_y - now.before_y
+    event[e.MOVED + 2] = now.corrected_z - now.before_z
+    event[e.START], event[e.START + 1], event[e.START + 2] = now.start_x, now.start_y, now.start_z
+    event[e.END] = now.at_x + now.corrected_x
+    event[e.END + 1] = now.at_y + now.corrected_y
+    event[e.END + 2] = now.at_z + now.corrected_z
+    event[e.SLOWED], event[e.SLOWED + 1], event[e.SLOWED + 2] = now.slowed_x, now.slowed_y, now.slowed_z
+    event[e.TURNED] = now.turned_x - now.unturned_x
+    event[e.TURNED + 1] = now.turned_y - now.unturned_y
+    event[e.TURNED + 2] = now.turned_z - now.unturned_z
 
 
 @kernel
@@ -89,13 +59,13 @@ def correct(rows: Floats, first_row: int, samples: Floats, event: Floats, state:
     event stay untouched.
     """
     now = state[0]
-    happened, contact_row, last_row = int(event[0]), event[2], event[3]
+    happened, contact_row, last_row = int(event[e.HAPPENED]), event[e.CONTACT_ROW], event[e.ROW]
     for i in range(rows.shape[0]):
         number = first_row + i
-        if number <= event[1] or number > last_row:
+        if number <= event[e.LIFT_ROW] or number > last_row:
             continue
         if number < contact_row:
-            along_swing(rows[i], event, (samples[i, 0] - event[4]) * 1e-9)
+            along_swing(rows[i], event, (samples[i, 0] - event[e.LIFT_NS]) * 1e-9)
             rows[i, 10] = SWING if happened & s.STRIDE else STANCE
         else:
             along_stance(rows[i], now, int(last_row) - number)
@@ -104,15 +74,15 @@ def correct(rows: Floats, first_row: int, samples: Floats, event: Floats, state:
 @part
 def along_swing(row: Floats, event: Floats, since_lift_s: float) -> None:
     """The cubic from the lift, where nothing changes, to the contact, where all of it does."""
-    swing_s = event[5]
+    swing_s = event[e.SWING_S]
     u = since_lift_s / swing_s
     rise, reach = u * u * (3.0 - 2.0 * u), u * u * (u - 1.0) * swing_s
     rise_rate, reach_rate = 6.0 * u * (1.0 - u) / swing_s, u * (3.0 * u - 2.0)
     for k in range(3):
-        moved, slowed = event[_MOVED + k], event[_SLOWED + k]
+        moved, slowed = event[e.MOVED + k], event[e.SLOWED + k]
         row[k] += rise * moved + reach * slowed
         row[3 + k] += rise_rate * moved + reach_rate * slowed
-    turn = exponential((u * event[_TURNED], u * event[_TURNED + 1], u * event[_TURNED + 2]))
+    turn = exponential((u * event[e.TURNED], u * event[e.TURNED + 1], u * event[e.TURNED + 2]))
     turn_row(row, turn)
 
 
@@ -142,3 +112,6 @@ def along_stance(row: Floats, now: KalmanState, back: int) -> None:
 def turn_row(row: Floats, turn: Quaternion) -> None:
     """Turn a row's attitude in *n*."""
     row[6], row[7], row[8], row[9] = normalise(multiply(turn, (row[6], row[7], row[8], row[9])))
+
+
+run = kernel(run_of(step, write_row, write_event, correct))

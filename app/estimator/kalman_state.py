@@ -13,7 +13,7 @@ from enum import IntEnum
 import numpy as np
 
 from app.estimator.compass import FOOTPRINTS, LOOK_WIDTH
-from app.estimator.state import Record, dtype_of
+from app.estimator.state import Record, dtype_of, turn_about_down
 from app.motion.basics import Floats
 from app.motion.samples import GyroBias
 from app.settings import Settings
@@ -283,32 +283,19 @@ def resume(state: Record, settings: Settings) -> None:
     angle_rad = settings.start_heading_rad - float(state["north_rad"][0])
     set_parameters(state, settings)
     if angle_rad:
-        turn_about_down(state[0], angle_rad)
+        turn_walk(state[0], angle_rad)
 
 
-def turn_about_down(state: np.void, angle_rad: float) -> None:
+def turn_walk(state: np.void, angle_rad: float) -> None:
     """Turn all that lies in *n* clockwise, seen from above, about the start."""
+    turn_about_down(state, _VECTORS, angle_rad)
     c, s = math.cos(angle_rad), math.sin(angle_rad)
-    for name in _VECTORS:
-        x, y = float(state[f"{name}x"]), float(state[f"{name}y"])
-        state[f"{name}x"], state[f"{name}y"] = c * x - s * y, s * x + c * y
     turn = np.eye(PARTS)
     for first in (0, VELOCITY_AT, ATTITUDE_AT):
         turn[first : first + 2, first : first + 2] = [[c, -s], [s, c]]
     state["P"] = turn @ state["P"] @ turn.T
-    for first in (RING_GAIN, RING_ROLL, RING_P, RING_Q):
-        xy = state["ring"][:, first : first + 2]
-        state["ring"][:, first : first + 2] = xy @ np.array([[c, s], [-s, c]])
-    for first in (0, 3):
-        xy = state["looks"][:, first : first + 2]
-        state["looks"][:, first : first + 2] = xy @ np.array([[c, s], [-s, c]])
+    for name, pairs in (("ring", (RING_GAIN, RING_ROLL, RING_P, RING_Q)), ("looks", (0, 3))):
+        for first in pairs:
+            xy = state[name][:, first : first + 2]
+            state[name][:, first : first + 2] = xy @ np.array([[c, s], [-s, c]])
     state["north_at_rad"] += angle_rad
-    c, s = math.cos(0.5 * angle_rad), math.sin(0.5 * angle_rad)
-    w, x, y, z = (float(state[f"q{i}"]) for i in range(4))
-    state["q0"], state["q1"], state["q2"], state["q3"] = (
-        c * w - s * z,
-        c * x - s * y,
-        c * y + s * x,
-        c * z + s * w,
-    )
-    state["heading"] += angle_rad

@@ -11,16 +11,17 @@ import numpy as np
 from app.estimator import corrections, kalman_run, kalman_state, papers_run, resume, state
 from app.estimator.gait import SWING
 from app.estimator.north import compass_of
+from app.estimator.running import Correct, Run
+from app.estimator.standing import PRIOR_RADPS
 from app.estimator.state import Record
 from app.estimator.trust import trust_of, unknown_m2
-from app.motion.basics import Floats
 from app.motion.estimate import Compass, Trust
 from app.motion.samples import GyroBias
 from app.rotation import yaw_of
 from app.settings import Settings
 
 #: What a gyro's bias may be, by how sure its rests are, is at least and at most this, rad/s.
-BIAS_RADPS = (5e-4, 4e-3)
+BIAS_RADPS = (5e-4, PRIOR_RADPS)
 
 
 def _unknown(_: Record, __: float) -> Trust | None:
@@ -32,8 +33,8 @@ class Method(NamedTuple):
 
     begin: Callable[[Settings, GyroBias | None], Record]  # before the first sample; a bias from before
     resume: Callable[[Record, Settings], None]  # from a checkpoint, under other settings
-    run: Callable[[Record, Floats, Floats, int, int, Floats], tuple[int, int]]
-    correct: Callable[[Floats, int, Floats, Floats, Record], None]
+    run: Run
+    correct: Correct
     moves: Callable[[Record], bool]  # whether rows since the lift may still change
     trust: Callable[[Record, float], Trust | None]  # how sure it is, after so many metres
     doubts: Callable[[Record], tuple[float, float, float]]  # as in ``strides.Step``
@@ -43,10 +44,6 @@ class Method(NamedTuple):
 
 def _papers_begin(settings: Settings, _: GyroBias | None) -> Record:
     return state.new_state(settings)
-
-
-def _papers_correct(rows: Floats, first_row: int, samples: Floats, event: Floats, _: Record) -> None:
-    corrections.correct(rows, first_row, samples, event)
 
 
 def _papers_moves(record: Record) -> bool:
@@ -79,7 +76,7 @@ METHODS: dict[str, Method] = {
         _papers_begin,
         resume.resume,
         papers_run.run,
-        _papers_correct,
+        corrections.correct,
         _papers_moves,
         _unknown,
         _papers_doubts,

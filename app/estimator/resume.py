@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
-
-from app.estimator.state import Record, set_parameters
+from app.estimator.state import Record, set_parameters, turn_about_down
 from app.settings import Settings
 
 _VECTORS = ("p", "v", "s", "a", "end_v", "end_s", "from_")
@@ -19,7 +17,7 @@ def resume(state: Record, settings: Settings) -> None:
     angle_rad = settings.start_heading_rad - float(state["north_rad"][0])
     set_parameters(state, settings)
     if angle_rad:
-        turn_about_down(state, angle_rad)
+        turn_about_down(state, _VECTORS, angle_rad)
     if state["levelled"][0]:
         from_rest = state["rest_norm"] / state["rest_n"]
         state["gravity"] = from_rest if settings.gravity_from_rest else settings.gravity_mps2
@@ -27,20 +25,3 @@ def resume(state: Record, settings: Settings) -> None:
         for axis in "xyz":
             state[f"w{axis}"] += state[f"bias_{axis}"]
             state[f"bias_{axis}"] = 0.0
-
-
-def turn_about_down(state: Record, angle_rad: float) -> None:
-    """Turn all that lies in *n* clockwise, seen from above, about the start."""
-    c, s = math.cos(angle_rad), math.sin(angle_rad)
-    for name in _VECTORS:
-        x, y = state[f"{name}x"].copy(), state[f"{name}y"].copy()
-        state[f"{name}x"], state[f"{name}y"] = c * x - s * y, s * x + c * y
-    c, s = math.cos(0.5 * angle_rad), math.sin(0.5 * angle_rad)
-    w, x, y, z = (state[f"q{i}"].copy() for i in range(4))
-    state["q0"], state["q1"], state["q2"], state["q3"] = (
-        c * w - s * z,
-        c * x - s * y,
-        c * y + s * x,
-        c * z + s * w,
-    )
-    state["heading"] += angle_rad

@@ -13,11 +13,13 @@ from scipy.ndimage import minimum_filter1d
 
 from app.blocks import BLOCK, Blocks
 from app.compiled import kernel, part
+from app.estimator import events as e
 from app.estimator import state as s
-from app.estimator.corrections import EVENT_WIDTH
+from app.estimator.detectors import ENERGY_BINS, LEAST_BINS
 from app.estimator.kalman import step
-from app.estimator.kalman_run import AS_RATE, turn_row, write_event
+from app.estimator.kalman_run import AS_RATE, turn_row, write_event, write_row
 from app.estimator.kalman_state import (
+    BIN_NS,
     FLOOR_AT,
     FLOOR_MEASURE,
     HEIGHT_AT,
@@ -42,7 +44,7 @@ from app.rotation import conjugate, exponential, rotate
 _DT, _HALF, _PUSH, _FLOOR, _NORTH, _MEASURED, _EACH = 1, 2, 6, 9, 10, 11, 2 + PARTS
 TRACE_WIDTH = _MEASURED + MEASURES * _EACH
 #: The gait around a sample: as long as the causal detector looks back, half of it to either side.
-ENERGY_S, LEAST_S = 1.5, 1.2
+ENERGY_S, LEAST_S = ENERGY_BINS * BIN_NS / 1e9, LEAST_BINS * BIN_NS / 1e9
 
 
 @kernel
@@ -68,11 +70,7 @@ def forward(
         now.learnt = 0.0
         now.told, now.told_energy, now.told_least = 1.0, gait[i, 0], gait[i, 1]
         happened = step(now, reading)
-        rows[i, 0], rows[i, 1], rows[i, 2] = now.px, now.py, now.pz
-        rows[i, 3], rows[i, 4], rows[i, 5] = now.vx, now.vy, now.vz
-        rows[i, 6], rows[i, 7], rows[i, 8], rows[i, 9] = now.q0, now.q1, now.q2, now.q3
-        rows[i, 10] = now.phase
-        rows[i, 11], rows[i, 12] = AS_RATE * now.statistic**0.5, AS_RATE * now.threshold**0.5
+        write_row(rows, i, now)
         write_trace(trace[i], now, happened)
         covariances[i] = now.P
         if happened & s.STRIDE:
@@ -200,7 +198,7 @@ def smooth(tracker: Tracker, samples: Blocks) -> None:
         return
     gait = gait_around(tracker, samples)
     trace, covariances = np.zeros((BLOCK, TRACE_WIDTH)), np.zeros((BLOCK, PARTS, PARTS))
-    events = np.zeros((BLOCK, EVENT_WIDTH))
+    events = np.zeros((BLOCK, e.WIDTH))
     state = tracker.checkpoints[tracker.rows.start].state.copy()
     states: list[tuple[int, Record]] = []
     strides: list[Floats] = []

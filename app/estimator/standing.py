@@ -14,13 +14,11 @@ import math
 from app.compiled import part
 from app.estimator.detectors import WALKING
 from app.estimator.kalman_state import GYRO_AT, PARTS, KalmanState
-from app.estimator.state import LEVEL_FOUND, RESTING
+from app.estimator.state import LEVEL_FOUND, RESTING, SHORTEST_REST_S
 from app.motion.basics import Vector
 
 #: Still is a statistic below this; after so many seconds without level it doubles every second.
 STILL, PATIENCE_S = 30.0, 2.0
-#: A rest shorter than the still window still serves for level (not for bias) from here.
-SHORTEST_S = 0.1
 #: σ of a gyro's bias before anything is known of it, and the least doubt left after a window, rad/s.
 PRIOR_RADPS, LEAST_DOUBT_RADPS = 0.004, 3e-4
 #: While walking the filter may turn the bias no faster than this doubt lets it: the errors of a swing
@@ -99,7 +97,7 @@ def find_level(state: KalmanState, field_b: Vector) -> int:
     """
     waited_s = (state.elapsed_ns - state.quiet_ns) * 1e-9 - PATIENCE_S
     if state.statistic > STILL * 2.0 ** min(max(waited_s, 0.0), 8.0):
-        if state.window_n > 1.0 and (state.elapsed_ns - state.window_ns) * 1e-9 >= SHORTEST_S:
+        if state.window_n > 1.0 and (state.elapsed_ns - state.window_ns) * 1e-9 >= SHORTEST_REST_S:
             return LEVEL_FOUND
         begin_window(state)
         return RESTING

@@ -6,6 +6,8 @@ code reads its fields as attributes, without counting references). Vectors are s
 
 from __future__ import annotations
 
+import math
+from collections.abc import Iterable
 from typing import Any
 
 import numpy as np
@@ -155,3 +157,16 @@ def set_parameters(state: Record, settings: Settings) -> None:
     state["bias_from_rest"] = settings.bias_from_rest
     state["still_window_s"] = settings.still_window_s
     state["north_rad"] = settings.start_heading_rad
+
+
+def turn_about_down(state: Record | np.void, vectors: Iterable[str], angle_rad: float) -> None:
+    """Turn these vectors, the attitude and the heading clockwise, seen from above, about the start."""
+    c, s = math.cos(angle_rad), math.sin(angle_rad)
+    for name in vectors:
+        x, y = state[f"{name}x"].copy(), state[f"{name}y"].copy()
+        state[f"{name}x"], state[f"{name}y"] = c * x - s * y, s * x + c * y
+    c, s = math.cos(0.5 * angle_rad), math.sin(0.5 * angle_rad)
+    w, x, y, z = (state[f"q{i}"].copy() for i in range(4))
+    state["q0"], state["q1"] = c * w - s * z, c * x - s * y
+    state["q2"], state["q3"] = c * y + s * x, c * z + s * w
+    state["heading"] += angle_rad

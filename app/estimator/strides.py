@@ -8,13 +8,10 @@ from typing import NamedTuple
 import numpy as np
 
 from app.compiled import kernel, part
-from app.estimator.corrections import Event
+from app.estimator import events as e
 from app.motion.basics import Floats, Vector
 from app.motion.estimate import Stride
 from app.rotation import yaw_of
-
-_START, _END = int(Event.START), int(Event.END)
-_LIFT_NS, _SWING_S = int(Event.LIFT_NS), int(Event.SWING_S)
 
 
 class Contact(NamedTuple):
@@ -44,7 +41,7 @@ class Step(NamedTuple):
 
 def step_of(stride: Stride, event: Floats, gap_s: float, doubts: tuple[float, float, float]) -> Step:
     """A stride that ``event`` ended; ``gap_s`` and ``doubts`` as in ``Step``."""
-    rows = (int(event[Event.LIFT_ROW]), int(event[Event.CONTACT_ROW]))
+    rows = (int(event[e.LIFT_ROW]), int(event[e.CONTACT_ROW]))
     north, east, _ = stride.end_n
     figures = (stride.start_s, stride.end_s, stride.swing_s, stride.length_m)
     return Step(*figures, (north, east), *rows, stride.heading_rad, gap_s, *doubts)
@@ -76,8 +73,8 @@ def figures(
     row = rows[-1]
     end_n = (row[0], row[1], row[2])
     heading_rad = yaw_of((row[6], row[7], row[8], row[9]))
-    swing_s = event[_SWING_S]
-    end_s = event[_LIFT_NS] * 1e-9 + swing_s
+    swing_s = event[e.SWING_S]
+    end_s = event[e.LIFT_NS] * 1e-9 + swing_s
     duration_s = end_s - start_s
     return (
         start_s,
@@ -105,8 +102,12 @@ def lift_above_line(rows: Floats, event: Floats) -> float:
 
     The line is taken over the horizontal way covered, so that a stair's own height is not lift.
     """
-    start_n = (event[_START], event[_START + 1], event[_START + 2])
-    north, east, climb = event[_END] - start_n[0], event[_END + 1] - start_n[1], start_n[2] - event[_END + 2]
+    start_n = (event[e.START], event[e.START + 1], event[e.START + 2])
+    north, east, climb = (
+        event[e.END] - start_n[0],
+        event[e.END + 1] - start_n[1],
+        start_n[2] - event[e.END + 2],
+    )
     squared = north * north + east * east
     best = 0.0
     for i in range(rows.shape[0]):

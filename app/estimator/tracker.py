@@ -7,9 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from app.blocks import BLOCK, Blocks
+from app.estimator import events as e
 from app.estimator import state as s
 from app.estimator.compass import CompassWatch
-from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.methods import METHODS, go_on
 from app.estimator.state import Record
 from app.estimator.strides import Contact, Step, lift_above_line, step_of, stride_to, turned
@@ -66,7 +66,7 @@ class Tracker:
         self._gap_s = 0.0  # … since the last stride
         self._watch = CompassWatch()
         self.checkpoints: dict[int, Checkpoint] = {}  # before each block's first row
-        self._events = np.zeros((self.method.events, EVENT_WIDTH))
+        self._events = np.zeros((self.method.events, e.WIDTH))
 
     @property
     def levelled(self) -> bool:
@@ -133,14 +133,14 @@ class Tracker:
     def _happen(self, samples: Blocks, event: Floats) -> None:
         kind, lift, _, row, *_ = event.tolist()
         happened, first, last = int(kind), int(lift) + 1, int(row) + 1
-        if not event[Event.APPLIED] and happened & (s.SWING_FOUND | s.FLICKER | s.STRIDE):
+        if not event[e.APPLIED] and happened & (s.SWING_FOUND | s.FLICKER | s.STRIDE):
             for rows, number in self.rows.pieces(first, last):
                 piece, place = samples.block(number)
                 self.method.correct(rows, number, piece[place : place + len(rows)], event, self.state)
         if happened & s.STRIDE:
             self._add_stride(event)
             if self.method.compass is None:
-                self._look_at_field(samples, int(event[Event.CONTACT_ROW]), last)
+                self._look_at_field(samples, int(event[e.CONTACT_ROW]), last)
         if happened & s.SEGMENT:
             self.segments.append(last - 1)
             self._gaps_s.append(self._since_before(samples, last - 1))
@@ -162,8 +162,8 @@ class Tracker:
         self._watch.add(piece[place : place + len(rows)], rows)
 
     def _add_stride(self, event: Floats) -> None:
-        lift = max(int(event[Event.LIFT_ROW]), self.rows.start)
-        *earlier, (rows, _) = self.rows.pieces(lift, int(event[Event.CONTACT_ROW]) + 1)
+        lift = max(int(event[e.LIFT_ROW]), self.rows.start)
+        *earlier, (rows, _) = self.rows.pieces(lift, int(event[e.CONTACT_ROW]) + 1)
         risen_m = max((lift_above_line(piece, event) for piece, _ in earlier), default=0.0)
         before = self._contact or self._lifted(event, lift)
         stride = stride_to(before, rows, event, self.stride_count + 1, risen_m)
@@ -183,12 +183,12 @@ class Tracker:
         breaks = [(row, gap_s) for row, gap_s in both if row >= self.rows.start]
         self._gap_s = 0.0
         for event in events:
-            while breaks and breaks[0][0] <= event[Event.LIFT_ROW]:
+            while breaks and breaks[0][0] <= event[e.LIFT_ROW]:
                 self._contact = None
                 self._gap_s += breaks.pop(0)[1]
             for axis in range(3):
-                event[Event.START + axis] = self._row(max(int(event[Event.LIFT_ROW]), self.rows.start))[axis]
-                event[Event.END + axis] = self._row(int(event[Event.CONTACT_ROW]))[axis]
+                event[e.START + axis] = self._row(max(int(event[e.LIFT_ROW]), self.rows.start))[axis]
+                event[e.END + axis] = self._row(int(event[e.CONTACT_ROW]))[axis]
             self._add_stride(event)
         self._gap_s += sum(gap_s for _, gap_s in breaks)
 
@@ -201,7 +201,7 @@ class Tracker:
     def _lifted(self, event: Floats, lift: int) -> Contact:
         """Where a segment's first swing began."""
         _, _, _, _, lift_ns, *_ = event.tolist()
-        north, east, down = event[Event.START : Event.START + 3].tolist()  # the row at the lift may be gone
+        north, east, down = event[e.START : e.START + 3].tolist()  # the row at the lift may be gone
         return Contact(lift_ns * 1e-9, (north, east, down), yaw_of(tuple(self._row(lift)[6:10].tolist())))
 
     def _row(self, number: int) -> Floats:

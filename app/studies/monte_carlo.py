@@ -7,8 +7,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from app.estimator import events as e
 from app.estimator import state as s
-from app.estimator.corrections import EVENT_WIDTH, Event
 from app.estimator.papers_run import run
 from app.motion.basics import Floats, Vector
 from app.motion.estimate import ROW_WIDTH
@@ -125,11 +125,11 @@ def footprints(samples: Floats, settings: Settings, strides: int, scratch: Float
     """Where the papers' step says the foot stood after each stride [strides, 3]; NaN past the last found."""
     state = s.new_state(settings)
     found, count, place = np.full((strides, 3), np.nan), 0, 0
-    events = np.zeros((strides + 8, EVENT_WIDTH))
+    events = np.zeros((strides + 8, e.WIDTH))
     while place < len(samples):
         place, happened = run(state, samples, scratch, place, len(samples), events)
         for event in events[:happened]:
-            if int(event[Event.HAPPENED]) & s.STRIDE and count < strides:
-                found[count] = event[Event.END : Event.END + 3]
+            if int(event[e.HAPPENED]) & s.STRIDE and count < strides:
+                found[count] = event[e.END : e.END + 3]
                 count += 1
     return found
