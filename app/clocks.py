@@ -50,8 +50,8 @@ class Clock(Protocol):
         """A sample and when it arrived."""
 
 
-class KnownClock:
-    """A recording's clock: its line is known, arrivals of a replay say nothing."""
+class FixedClock:
+    """A clock whose line is given (a recording's), or that nobody reads: arrivals say nothing."""
 
     def __init__(self, line: ClockLine = SAME) -> None:
         self.line = line
@@ -211,4 +211,4 @@ def _least_delayed(device_ns: Ints, host_ns: Ints) -> Ints:
 
 def clock_for(info: SourceInfo, sensor: str) -> Clock:
     """The clock of one of a source's sensors: learnt from a live one, known of a recording."""
-    return LiveClock() if info.duration_s is None else KnownClock(info.clocks.get(sensor, SAME))
+    return LiveClock() if info.duration_s is None else FixedClock(info.clocks.get(sensor, SAME))

@@ -15,7 +15,7 @@ from statistics import median
 from typing import NamedTuple
 
 from app.clocks import Clock
-from app.motion.basics import GaitPhase, Role, Vector
+from app.motion.basics import G_MPS2, GaitPhase, Role, Vector
 from app.motion.health import Health, Light, Recent
 from app.motion.samples import GAP_NS, Sample
 
@@ -196,7 +196,7 @@ LATE_MS = (100.0, 500.0)
 LOST, SATURATED, SPOILT = (0.01, 0.05), (0.02, 0.10), (0.01, 0.10)
 SLOW_HZ = 50.0
 STANCE_MPS2 = (1.5, 4.0)
-GRAVITY_MPS2 = (9.80665, 0.35)  # and how far a sensor that needs no calibration may be off
+GRAVITY_MPS2 = (G_MPS2, 0.35)  # and how far a sensor that needs no calibration may be off
 DISTURBANCE = 0.20
 DRIFT_PPM = 500.0
 

@@ -10,14 +10,13 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from app.motion.basics import Floats
+from app.motion.basics import G_MPS2, Floats
 from app.studies.attitude import Config, Found
 from app.studies.motions import MOTIONS
 from app.studies.words import Task
 
 _HALF_TURN = np.array([1.0, -1.0, -1.0])
 _SAME_TURN = np.array([1.0, 1.0, -1.0, -1.0])
-_G = 9.80665
 
 
 def tasks(config: Config) -> Sequence[Task]:
@@ -53,6 +52,6 @@ def imufusion_ahrs(motion: str, samples: Floats) -> Found:
     q = np.empty((len(samples), 4))
     filter_.set_sample_period(float(np.median(np.diff(samples[:, 0]))) * 1e-9)
     for i in range(len(samples)):
-        filter_.update(np.degrees(rate[i]), force[i] / _G, field[i])
+        filter_.update(np.degrees(rate[i]), force[i] / G_MPS2, field[i])
         q[i] = filter_.get_quaternion()
     return Found("imufusion", motion, q * _SAME_TURN)

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 
 from app.calibration.still import Pose, Stillness
 from app.health import DRIFT_PPM, FEET, GRAVITY_MPS2, LOST, SLOW_HZ
-from app.motion.basics import Role
+from app.motion.basics import G_MPS2, Role
 from app.motion.health import Health
 from app.motion.samples import Sample
 from app.motion.snapshot import FootView
@@ -217,7 +217,7 @@ class Preflight:
         if wanting:
             return Line("range", WAIT, f"Stamp, or kick forward: {' and '.join(wanting)}.")
         most = max(foot.most_mps2 for foot in self._feet.values())
-        return Line("range", GOOD, f"up to {most / 9.80665:.1f} g, none cut off")
+        return Line("range", GOOD, f"up to {most / G_MPS2:.1f} g, none cut off")
 
     def _heading(self, views: Mapping[str, FootView], uses_field: bool) -> Line:
         still = all(foot.rest is not None for foot in self._feet.values())

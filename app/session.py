@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from app.applying import Applying, Asked
 from app.beside import Beside
 from app.blocks import BLOCK
-from app.clocks import Clock, KnownClock, LiveClock
+from app.clocks import Clock, FixedClock, LiveClock
 from app.graphs import graph_of
 from app.health import Monitor, judge
 from app.memory import Memory
@@ -37,7 +37,7 @@ class Session:
         roles: Callable[[str], Role] = role_of,
         truth: Truth | None = None,
         budget_bytes: int = DEFAULT_BUDGET,
-        clock: Callable[[str], Clock] = lambda _: KnownClock(),
+        clock: Callable[[str], Clock] = lambda _: FixedClock(),
         epoch: int = 0,
         rod_m: float | None = None,
     ) -> None:

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass, fields
 
 from app.limits import Limit, Limited, Value, setting
+from app.motion.basics import G_MPS2
 
 
 @dataclass(frozen=True)
@@ -88,7 +89,7 @@ class Settings(Limited):
         ),
     )  # fmt: skip
     gravity_mps2: float = setting(
-        9.80665,
+        G_MPS2,
         Limit(
             "Gravity", "g", "m/s²",
             "The gravity to subtract when it is not taken from rest; 0.1 too much sinks each stride"

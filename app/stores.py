@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from app.blocks import Blocks
-from app.clocks import Clock, KnownClock
+from app.clocks import Clock, FixedClock
 from app.estimator.feet import Worn
 from app.motion.basics import Role, Vector
 from app.motion.samples import SAMPLE_WIDTH, Rows, Sample
@@ -23,7 +23,7 @@ class SensorStore:
     def __init__(self, sensor: str, role: Role, clock: Clock | None = None) -> None:
         self.sensor = sensor
         self.role = role
-        self.clock: Clock = clock or KnownClock()
+        self.clock: Clock = clock or FixedClock()
         self.origin_ns: int | None = None  # of the walk, on the clock that all sensors share
         self.samples = Blocks(SAMPLE_WIDTH)
         self.clocks = Blocks(2)  # host_ns, saturation

@@ -177,7 +177,6 @@ class FootTrack:
             role=store.role,
             t_s=t_s,
             position_n=position,
-            velocity_n=(row[3], row[4], row[5]),
             q_nb=(row[6], row[7], row[8], row[9]),
             phase=GaitPhase(int(row[10])),
             levelled=tracker.levelled,

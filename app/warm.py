@@ -16,7 +16,7 @@ from app.estimator.sweep import sweep
 from app.estimator.tracker import Tracker
 from app.gestures.default import DefaultDecoder
 from app.gestures.words import FootReading
-from app.motion.basics import Role
+from app.motion.basics import G_MPS2, Role
 from app.motion.estimate import ROW_WIDTH
 from app.motion.samples import SAMPLE_WIDTH
 from app.rotation import conjugate, from_yaw, multiply, rotate, yaw_of
@@ -29,7 +29,7 @@ def still_samples(count: int = 8) -> Blocks:
     table = Blocks(SAMPLE_WIDTH)
     rows = np.zeros((count, SAMPLE_WIDTH))
     rows[:, 0] = np.arange(count) * 10_000_000
-    rows[:, 3] = -9.80665
+    rows[:, 3] = -G_MPS2
     table.extend(rows)
     return table
 

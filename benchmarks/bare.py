@@ -23,9 +23,9 @@ from app.door.access import Access
 from app.door.front import Door
 from app.motion.basics import Role
 from app.scene import private, town
+from app.scene.follow import NED_WXYZ
 from app.scene.ground import Ground
 from app.scene.mover_page import FAR_M, FOV_DEG, NEAR_M
-from app.scene.page import NED_WXYZ
 from app.scene.shoe import Shoe
 
 FRAME_S = 1 / 60

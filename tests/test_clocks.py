@@ -7,7 +7,7 @@ import itertools
 import numpy as np
 import pytest
 
-from app.clocks import BINS, KnownClock, LiveClock, recorded_line
+from app.clocks import BINS, FixedClock, LiveClock, recorded_line
 from app.formats.wire.ticks import DeviceClock
 from app.motion.samples import ClockLine
 
@@ -121,10 +121,10 @@ def test_before_the_drift_is_known_only_the_offset_is_told() -> None:
 
 
 def test_a_known_clock_learns_nothing() -> None:
-    clock = KnownClock(ClockLine(5, 105, 1e-4))
+    clock = FixedClock(ClockLine(5, 105, 1e-4))
     clock.add(1, 2)
     assert clock.line.host(10_005) == 10_106
-    assert KnownClock().line.host(123) == 123
+    assert FixedClock().line.host(123) == 123
 
 
 def test_the_line_does_not_depend_on_later_samples_being_asked_about() -> None:

@@ -10,7 +10,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from app.clocks import KnownClock, LiveClock
+from app.clocks import FixedClock, LiveClock
 from app.health import BINS, Monitor, judge, percent, report
 from app.motion.basics import GaitPhase, Role
 from app.motion.health import Health, Light, Recent
@@ -161,7 +161,7 @@ def test_a_clock_that_runs_away_is_told() -> None:
 
 
 def test_only_standing_tells_gravity() -> None:
-    monitor = Monitor(KnownClock())
+    monitor = Monitor(FixedClock())
     for sample in stream(20.0):
         monitor.add(sample._replace(specific_force_b=(0.0, 0.0, -30.0)), True, GaitPhase.SWING)
     recent = monitor.recent(0.0, live=True)
@@ -170,7 +170,7 @@ def test_only_standing_tells_gravity() -> None:
 
 def test_each_stance_tells_its_stillest_moment() -> None:
     """Half a second of swing that shakes by 20 m/s², half a second of stance that begins with a thud."""
-    monitor = Monitor(KnownClock())
+    monitor = Monitor(FixedClock())
     for s in stream(20.0):
         part = s.seq % 100
         shake = 20.0 * (-1) ** s.seq if part < 50 else 8.0 * (-1) ** s.seq if part < 60 else 0.0

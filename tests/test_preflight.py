@@ -8,7 +8,7 @@ from collections.abc import Callable, Mapping
 
 import pytest
 
-from app.clocks import KnownClock
+from app.clocks import FixedClock
 from app.health import Monitor, judge
 from app.motion.basics import GaitPhase, Role
 from app.motion.health import Health
@@ -26,7 +26,7 @@ NO_TRAIL = Trail((), None, None)  # type: ignore[arg-type]
 def view(sensor: str, north_m: float = 0.0, distance_m: float = 0.0, yaw_rad: float = 0.0) -> FootView:
     q = (math.cos(yaw_rad / 2), 0.0, 0.0, math.sin(yaw_rad / 2))
     return FootView(
-        sensor, FEET.get(sensor, Role.FOOT), 0.0, (north_m, 0.0, 0.0), (0.0, 0.0, 0.0), q, GaitPhase.STANCE,
+        sensor, FEET.get(sensor, Role.FOOT), 0.0, (north_m, 0.0, 0.0), q, GaitPhase.STANCE,
         True, 0, distance_m, 0.0, 0.0, 0.0, 0.0, NO_TRAIL, (), None,
     )  # fmt: skip
 
@@ -37,7 +37,7 @@ class Rehearsal:
     def __init__(self, roles: Mapping[str, Role] = FEET, rate_hz: float = 100.0) -> None:
         self.preflight = Preflight(roles)
         self.sensors = tuple(roles)
-        self.monitors = {sensor: Monitor(KnownClock()) for sensor in roles}
+        self.monitors = {sensor: Monitor(FixedClock()) for sensor in roles}
         self.rate_hz, self.count, self.uses_field = rate_hz, 0, True
         self.views = {sensor: view(sensor) for sensor in roles}
         self.change: Callable[[Sample], Sample | None] = lambda sample: sample

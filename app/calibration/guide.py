@@ -12,7 +12,7 @@ from app.calibration import ellipsoid, report, turns
 from app.calibration.steps import FIELD_STEPS, STEPS, Step, pose_words
 from app.calibration.still import Pose, Stillness
 from app.calibration.words import Calibration, Correction, correction
-from app.motion.basics import Floats
+from app.motion.basics import G_MPS2, Floats
 from app.motion.samples import GAP_NS, Sample
 from app.motion.status import GuideView
 
@@ -30,7 +30,6 @@ MOST, MOST_FIELDS = 60_000, 6_000
 FIELD_STEP = 0.02
 #: From so much of all directions the skew of the magnetometer's axes can be told too.
 ENOUGH_COVERAGE = 0.45
-GRAVITY_MPS2 = 9.80665
 
 
 @dataclass
@@ -184,7 +183,7 @@ class Guide:
     # --- what was found ----------------------------------------------------------------------------
 
     def results(
-        self, made: str, gravity_mps2: float = GRAVITY_MPS2, field_ut: float | None = None
+        self, made: str, gravity_mps2: float = G_MPS2, field_ut: float | None = None
     ) -> tuple[Calibration, Calibration]:
         """The fits and the report's formulas. ``field_ut``: the field's true strength where it is known.
 

@@ -8,7 +8,7 @@ import sys
 from pathlib import Path
 
 from app.commands.shared import Commands, add_json
-from app.motion.basics import InputError
+from app.motion.basics import G_MPS2, InputError
 from app.motion.status import GuideView
 
 
@@ -22,7 +22,7 @@ def add(commands: Commands) -> None:
     guided.add_argument(
         "--method", choices=("fit", "report"), default="fit", help="which result is saved (default: fit)"
     )
-    guided.add_argument("--gravity", metavar="M/S2", type=float, default=9.80665, help="of this place")
+    guided.add_argument("--gravity", metavar="M/S2", type=float, default=G_MPS2, help="of this place")
     guided.add_argument("--field", metavar="UT", type=float, help="the true strength of the field, in µT")
     guided.add_argument("--out", metavar="FILE", type=Path, help="also write it here")
     guided.add_argument("--no-save", action="store_true", help="show it only; nothing will be applied")

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from app.formats.units import FORCE, G_MPS2
-from app.motion.basics import Floats, InputError
+from app.formats.units import FORCE
+from app.motion.basics import G_MPS2, Floats, InputError
 from app.motion.samples import Samples
 
 _WINDOW_S = 0.1  # even a shuffling patient stands this long

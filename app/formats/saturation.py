@@ -13,10 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion.basics import Floats
+from app.motion.basics import G_MPS2, Floats
 from app.motion.samples import SAMPLE_WIDTH, Column
 
-_G = 9.80665
 _NEAR = 0.98  # of the range: flagged from here on
 _REPEATS = 3
 _LARGE = (20.0, 2.0)  # m/s², rad/s: below this a repeated extreme is only a coarse sensor at rest
@@ -33,13 +32,13 @@ class Range:
 
 #: Standard ranges by device; a ``mip`` sensor is sold in many.
 RANGES: dict[str, Range] = {
-    "gx1": Range(5 * _G, math.radians(300), 120.0),
+    "gx1": Range(5 * G_MPS2, math.radians(300), 120.0),
     "mip": Range(),
-    "ximu": Range(8 * _G, math.radians(2000)),
-    "ngimu": Range(16 * _G, math.radians(2000), 1300.0),
-    "ximu3": Range(24 * _G, math.radians(2000)),
-    "xsens": Range(16 * _G, math.radians(2000)),
-    "witmotion": Range(16 * _G, math.radians(2000)),
+    "ximu": Range(8 * G_MPS2, math.radians(2000)),
+    "ngimu": Range(16 * G_MPS2, math.radians(2000), 1300.0),
+    "ximu3": Range(24 * G_MPS2, math.radians(2000)),
+    "xsens": Range(16 * G_MPS2, math.radians(2000)),
+    "witmotion": Range(16 * G_MPS2, math.radians(2000)),
     "csv": Range(),
 }
 

@@ -4,9 +4,7 @@ from __future__ import annotations
 
 import math
 
-from app.motion.basics import InputError
-
-G_MPS2 = 9.80665
+from app.motion.basics import G_MPS2, InputError
 
 FORCE = {"m/s²": 1.0, "m/s^2": 1.0, "m/s2": 1.0, "m/s/s": 1.0, "mps2": 1.0, "g": G_MPS2, "mg": G_MPS2 / 1000}
 RATE = {"rad/s": 1.0, "radps": 1.0}

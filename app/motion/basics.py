@@ -16,6 +16,8 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Vector = tuple[float, float, float]
 Quaternion = tuple[float, float, float, float]
+#: Standard gravity, m/s²: what "1 g" is.
+G_MPS2 = 9.80665
 
 
 class InputError(ValueError):

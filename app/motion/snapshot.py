@@ -56,7 +56,6 @@ class FootView(NamedTuple):
     role: Role
     t_s: float
     position_n: Vector
-    velocity_n: Vector
     q_nb: Quaternion
     phase: GaitPhase
     levelled: bool  # False until the still start has been found

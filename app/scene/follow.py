@@ -9,8 +9,10 @@ from __future__ import annotations
 
 import math
 
-from app.motion.basics import Vector
+from app.motion.basics import Quaternion, Vector
 
+#: North–east–down into viser's east–north–up: half a turn about the line between north and east.
+NED_WXYZ: Quaternion = (0.0, 0.5**0.5, 0.5**0.5, 0.0)
 #: North, east, down: slow in height, or the floor would bob with every step.
 STIFFNESS_PER_S = (3.2, 3.2, 0.7)
 JUMP_M = 4.0  # a seek or a new walk: go there at once

@@ -8,10 +8,9 @@ import numpy as np
 
 from app.motion.basics import Quaternion, Vector
 from app.rotation import multiply
+from app.scene.follow import NED_WXYZ
 from app.scene.glb import Part, glb
 
-#: North–east–down into viser's east–north–up.
-NED_WXYZ: Quaternion = (0.0, 0.5**0.5, 0.5**0.5, 0.0)
 BEACON_M = 7.0
 _GOLD = (1.0, 0.72, 0.16)
 

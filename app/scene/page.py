@@ -9,14 +9,14 @@ from functools import partial
 
 import viser
 
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import Vector
 from app.motion.door import GuiRule
 from app.motion.snapshot import Snapshot
 from app.motion.source import Outline
 from app.motion.status import Reference, Status
 from app.scene import private
 from app.scene.controls import Controls, Submit
-from app.scene.follow import Glide, middle
+from app.scene.follow import NED_WXYZ, Glide, middle
 from app.scene.ground import Ground
 from app.scene.head import head
 from app.scene.once import Once
@@ -28,8 +28,6 @@ from app.scene.stage import Stage
 
 log = logging.getLogger(__name__)
 
-#: North–east–down into viser's east–north–up: half a turn about the line between north and east.
-NED_WXYZ: Quaternion = (0.0, 0.5**0.5, 0.5**0.5, 0.0)
 TEXT_S, GRAPH_S = 0.125, 0.125
 LONGEST_STEP_S = 0.1
 

@@ -14,9 +14,9 @@ import viser
 
 from app.motion.snapshot import FootView, Snapshot
 from app.scene import figures, private, ribbon, swinging, words
-from app.scene.follow import Glide, middle
+from app.scene.follow import NED_WXYZ, Glide, middle
 from app.scene.ground import Ground
-from app.scene.page import NED_WXYZ, in_view, place_camera
+from app.scene.page import in_view, place_camera
 from app.scene.stage import Stage
 from app.scene.walkers import node_name
 

@@ -7,10 +7,10 @@ import signal
 import time
 from collections.abc import Callable
 
-from app.calibration.guide import GRAVITY_MPS2, Guide
+from app.calibration.guide import Guide
 from app.calibration.words import Calibration
 from app.home.calibrations import key_of
-from app.motion.basics import InputError
+from app.motion.basics import G_MPS2, InputError
 from app.motion.samples import Sample
 from app.motion.source import Link
 from app.motion.status import GuideView
@@ -29,7 +29,7 @@ def calibrate(
     spec: str,
     sensor: str | None,
     look: Callable[[GuideView], None],
-    gravity_mps2: float = GRAVITY_MPS2,
+    gravity_mps2: float = G_MPS2,
     field_ut: float | None = None,
 ) -> Results:
     """Lead through a calibration of one sensor of a source: the fits and the report's formulas.

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from app.clocks import SAME, KnownClock
+from app.clocks import SAME, FixedClock
 from app.motion.basics import InputError, role_of
 from app.motion.recording import Recording
 from app.motion.source import Truth
@@ -44,7 +44,7 @@ def _filmed(recording: Recording, truth: Truth | None, settings: Settings) -> st
         settings,
         lambda sensor: roles.get(sensor) or role_of(sensor),
         truth,
-        clock=lambda sensor: KnownClock(recording.clocks.get(sensor, SAME)),
+        clock=lambda sensor: FixedClock(recording.clocks.get(sensor, SAME)),
         rod_m=recording.rod_m,
     )
     taken = 0

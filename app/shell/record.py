@@ -67,6 +67,7 @@ async def _fill(source: Source, recorder: Recorder, seconds: float | None) -> No
 
 
 async def _take(source: Source, recorder: Recorder, prepared: asyncio.Task[None]) -> None:
+    # nobody sees this walk and only each foot's own state is kept: it needs no clock
     session, corrections = Session(START, budget_bytes=BUDGET), Corrections(lambda: source.info)
     early = Early(session.take)
     recording = _record(source, recorder, session, early, corrections)

@@ -12,10 +12,10 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from app.motion.basics import Floats, InputError, Role
+from app.motion.basics import G_MPS2, Floats, InputError, Role
 from app.motion.recording import Recording
 from app.motion.samples import Samples
-from app.simulate.sensors import FIELD_N_UT, STANDARD_GRAVITY, TABLE_II_NOISE
+from app.simulate.sensors import FIELD_N_UT, TABLE_II_NOISE
 
 #: Appendix B's turns: axis (0 x, 1 y, 2 z) and degrees; 0 is a pause.
 TURNS = (
@@ -76,7 +76,7 @@ def make_calibration(texts: Mapping[str, str]) -> Calibrating:
         for null, scale in ((0.3, 0.02), (0.03, 0.02), (15.0, 0.05))
     )
     t_s, turned, rates = _motion(options, random)
-    down = np.array([0.0, 0.0, -STANDARD_GRAVITY])
+    down = np.array([0.0, 0.0, -G_MPS2])
     readings = [
         force.read(np.einsum("nji,j->ni", turned, down)),
         rate.read(rates),

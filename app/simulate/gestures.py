@@ -14,7 +14,7 @@ from functools import partial
 
 import numpy as np
 
-from app.motion.basics import Floats, InputError, MotionId
+from app.motion.basics import G_MPS2, Floats, InputError, MotionId
 from app.motion.recording import Recording
 from app.motion.samples import Samples
 from app.motion.source import Truth
@@ -37,7 +37,6 @@ from app.simulate.sensors import TABLE_II_NOISE, SensorErrors, ideal_readings, r
 from app.simulate.walk import sample_times_ns
 
 FEET = ("left", "right")
-_GRAVITY = 9.80665
 _MOST_SAMPLES = 20_000_000
 #: What each foot does in each motion: left, right.
 PARTS: Mapping[MotionId, tuple[str, str]] = {
@@ -249,7 +248,7 @@ def other_foot(foot: str) -> str:
 def _sensor(name: str, foot: GestureFoot, elapsed_ns: Floats, options: GestureOptions) -> Samples:
     rng = np.random.default_rng([options.seed, 3, *name.encode()])
     t_s = elapsed_ns * 1e-9
-    ideal = ideal_readings(foot.at(t_s), _GRAVITY, None)
+    ideal = ideal_readings(foot.at(t_s), G_MPS2, None)
     turn = np.radians(options.mounting_deg) * rng.uniform(-1.0, 1.0, 3)
     mounted = np.repeat(_orientation(*(np.array([x]) for x in turn)), len(ideal), axis=0)
     ideal = np.hstack([rotate_to_body(mounted, ideal[:, i : i + 3]) for i in (0, 3, 6)])

@@ -12,7 +12,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion.basics import Floats, MotionId, Vector
+from app.motion.basics import G_MPS2, Floats, MotionId, Vector
 from app.motion.samples import Sample
 from app.simulate.gestures import FEET, PARTS, action_of, motion_of, other_foot
 from app.simulate.gestures_actions import CHANNELS, Action, add_up, drawer, give
@@ -20,7 +20,6 @@ from app.simulate.gestures_options import GestureOptions
 from app.simulate.gestures_steps import Course, sum_of
 from app.simulate.sensors import TABLE_II_NOISE, ideal_readings
 
-_GRAVITY = 9.80665
 _TAIL_S = 0.1  # the sole may ring so long after an action; then all is back where it began
 _PROMPT_S = 0.02
 
@@ -127,7 +126,7 @@ class LiveFeet:
     def _readings(self, name: str, count: int) -> Floats:
         """What the sensor reads at the next samples, [n, 6]."""
         courses = _sum(self._actions[name], self._sent, count)
-        ideal = ideal_readings(motion_of(courses, 0.0), _GRAVITY, None)[:, :6]
+        ideal = ideal_readings(motion_of(courses, 0.0), G_MPS2, None)[:, :6]
         noise = np.repeat(np.array(TABLE_II_NOISE[:2]) * self.options.noise, 3)
         return np.asarray(ideal + noise * self._rng.standard_normal(ideal.shape))
 

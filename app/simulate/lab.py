@@ -10,11 +10,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from app.limits import Limit, Limited, Value, setting
-from app.motion.basics import InputError, Vector
+from app.motion.basics import G_MPS2, InputError, Vector
 from app.motion.commands import SetErrors
 from app.motion.samples import Sample
 from app.settings import Settings
-from app.simulate.sensors import STANDARD_GRAVITY, TABLE_II_NOISE
+from app.simulate.sensors import TABLE_II_NOISE
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ class Lab:
         if e.lost_percent and 100.0 * self._random.random() < e.lost_percent:
             return None
         noise = self._random.standard_normal((3, 3)) * e.noise if e.noise else np.zeros((3, 3))
-        limit = e.range_g * STANDARD_GRAVITY
+        limit = e.range_g * G_MPS2
         force = _off(sample.specific_force_b, e.force_bias_mps2, TABLE_II_NOISE[0] * noise[0])
         rate = _off(sample.angular_rate_b, math.radians(e.rate_bias_dps), TABLE_II_NOISE[1] * noise[1])
         return sample._replace(

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, fields
 from typing import Any
 
-from app.motion.basics import InputError
+from app.motion.basics import G_MPS2, InputError
 
 MODELS = ("smooth", "papers")
 UNITS = (
@@ -76,7 +76,7 @@ class WalkOptions:
     heading_deg: float = _option(
         0.0, "heading at the start, clockwise from magnetic north", low=-360.0, high=360.0
     )
-    gravity_mps2: float = _option(9.80665, "gravity", low=1.0, high=20.0)
+    gravity_mps2: float = _option(G_MPS2, "gravity", low=1.0, high=20.0)
     seed: int = _option(0, "seed of the noise and of the lost samples", kind="integer", low=0, high=2**63 - 1)
     noise: float = _option(0.0, "random errors, in multiples of Table II", low=0.0, high=1_000.0)
     bias: float = _option(0.0, "constant errors, in multiples of Table II", low=-1_000.0, high=1_000.0)

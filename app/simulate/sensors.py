@@ -13,13 +13,12 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from app.motion.basics import Floats, Vector, role_of
+from app.motion.basics import G_MPS2, Floats, Vector, role_of
 from app.motion.samples import Samples
 from app.simulate.foot import Motion, rotate_to_body
 from app.simulate.options import WalkOptions
 
 MICROTESLA_PER_GAUSS = 100.0
-STANDARD_GRAVITY = 9.80665
 #: The field of dissertation eq. 4.12: 0.486 gauss, dipping 60.483°.
 FIELD_N_UT: Vector = (
     48.6 * math.cos(math.radians(60.483)),
@@ -60,7 +59,7 @@ def errors_of(options: WalkOptions) -> SensorErrors:
         None if field_bias is None else (field_bias[0] * gauss, field_bias[1] * gauss, field_bias[2] * gauss),
     )
     ranges = (
-        _times(o.accelerometer_range_g, STANDARD_GRAVITY),
+        _times(o.accelerometer_range_g, G_MPS2),
         _times(o.gyro_range_dps, math.radians(1.0)),
         _times(o.magnetometer_range_gauss, gauss),
     )

@@ -9,9 +9,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion.basics import Floats, Quaternion
+from app.motion.basics import G_MPS2, Floats, Quaternion
 from app.simulate.foot import rotate_to_body
-from app.simulate.sensors import FIELD_N_UT, STANDARD_GRAVITY
+from app.simulate.sensors import FIELD_N_UT
 from app.studies.attitudes import criterion, fqa, gauss_newton, quest, triad
 from app.studies.filters import exact_filter
 from app.studies.motions import MOTIONS, Motion, Sensor, perfect, tilt_table
@@ -122,14 +122,14 @@ def decay(config: Config, gain: float) -> tuple[Floats, Floats]:
     t = np.arange(round(3.0 / gain * rate_hz) + 1) / rate_hz
     level = np.zeros((len(t), 10))
     level[:, 0] = np.rint(t * 1e9)
-    level[:, 3] = -STANDARD_GRAVITY
+    level[:, 3] = -G_MPS2
     level[:, 7:] = FIELD_N_UT
     axis = np.array([1.0, 1.0, 1.0]) / math.sqrt(3.0)
     half = 0.5 * math.radians(config.error_deg)
     x, y, z = (math.sin(half) * axis).tolist()
     out = np.empty((len(t), 4))
     gauss_newton(level, FIELD_N_UT, (math.cos(half), x, y, z), gain, 1.0, 1, out)
-    force = (0.0, 0.0, -STANDARD_GRAVITY)
+    force = (0.0, 0.0, -G_MPS2)
     phi = [criterion((a, b, c, d), force, FIELD_N_UT, FIELD_N_UT) for a, b, c, d in out.tolist()]
     return t, np.array(phi)
 

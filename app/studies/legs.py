@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion.basics import Floats, Vector
+from app.motion.basics import G_MPS2, Floats, Vector
 from app.motion.samples import Samples
 from app.simulate.foot import FootMotion, Motion, Swing, Timing, join_footprints
 from app.simulate.gait import FLAT_SHARE, smooth_gait
 from app.simulate.options import WalkOptions
-from app.simulate.sensors import STANDARD_GRAVITY, errors_of, ideal_readings, read
+from app.simulate.sensors import errors_of, ideal_readings, read
 
 
 class Leg(NamedTuple):
@@ -61,7 +61,7 @@ def walk_legs(
     whole = Motion(*(np.concatenate(columns) for columns in zip(*pieces, strict=True)))
     elapsed_ns = np.rint(np.arange(len(whole.q_nb)) * (1e9 / sensor.rate_hz))
     errors = errors_of(WalkOptions(noise=sensor.noise, bias=sensor.bias, gyro_bias_radps=sensor.gyro_bias))
-    samples = read("foot", elapsed_ns, ideal_readings(whole, STANDARD_GRAVITY, None), errors, seed)
+    samples = read("foot", elapsed_ns, ideal_readings(whole, G_MPS2, None), errors, seed)
     distance = sum(sum(part.strides_m) for part in legs)
     return Made(samples, distance, (place[0].item(), place[1].item(), place[2].item()), heading)
 

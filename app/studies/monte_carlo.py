@@ -10,12 +10,12 @@ import numpy as np
 from app.estimator import events as e
 from app.estimator import state as s
 from app.estimator.papers_run import run
-from app.motion.basics import Floats, Vector
+from app.motion.basics import G_MPS2, Floats, Vector
 from app.motion.estimate import ROW_WIDTH
 from app.motion.samples import Column
 from app.settings import Settings
 from app.simulate.options import WalkOptions
-from app.simulate.sensors import MICROTESLA_PER_GAUSS, STANDARD_GRAVITY
+from app.simulate.sensors import MICROTESLA_PER_GAUSS
 from app.simulate.walk import simulate
 
 #: Walks to a task: enough to be worth sending, few enough to keep every worker busy.
@@ -57,7 +57,7 @@ class WalkConfig:
     gain_swing: float = 0.0
     threshold_radps: float = 1.0
     min_duration_s: float = 0.06
-    gravity_mps2: float = STANDARD_GRAVITY
+    gravity_mps2: float = G_MPS2
     seed: int = 2012
 
     @property

@@ -8,12 +8,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from app.motion.basics import Floats
+from app.motion.basics import G_MPS2, Floats
 from app.motion.samples import SAMPLE_WIDTH
 from app.simulate.foot import rotate_to_body
 from app.simulate.options import WalkOptions
 from app.simulate.pendulum import Pendulum, read, swing
-from app.simulate.sensors import FIELD_N_UT, STANDARD_GRAVITY
+from app.simulate.sensors import FIELD_N_UT
 from app.simulate.walk import simulate
 
 #: Every motion begins with a rest; what a filter does in it is not scored.
@@ -74,7 +74,7 @@ def perfect(sensor: Sensor) -> Sensor:
 def pendulum(sensor: Sensor) -> Motion:
     """The dissertation's pendulum, held at 10° and let go after 5 s."""
     t = np.arange(round(25.0 * sensor.rate_hz) + 1) / sensor.rate_hz
-    body = Pendulum(gravity_mps2=STANDARD_GRAVITY)
+    body = Pendulum(gravity_mps2=G_MPS2)
     truth = swing(body, 25.0)
     since = np.maximum(t - STILL_S, 0.0)
     samples = read(body, truth, since)
@@ -107,7 +107,7 @@ def _turning(t: Floats, q_nb: Floats, rate_b: Floats) -> Floats:
     """What a sensor reads that turns without going anywhere."""
     samples = np.zeros((len(t), SAMPLE_WIDTH))
     samples[:, 0] = np.rint(t * 1e9)
-    samples[:, 1:4] = rotate_to_body(q_nb, np.array([0.0, 0.0, -STANDARD_GRAVITY]))
+    samples[:, 1:4] = rotate_to_body(q_nb, np.array([0.0, 0.0, -G_MPS2]))
     samples[:, 4:7] = rate_b
     samples[:, 7:10] = rotate_to_body(q_nb, np.array(FIELD_N_UT))
     return samples

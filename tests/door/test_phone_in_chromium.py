@@ -17,8 +17,7 @@ from app.door.access import is_loopback
 from app.door.addresses import reachable
 from app.door.front import Door
 from app.door.ingest import phone_address
-from app.formats.units import G_MPS2
-from app.motion.basics import role_of
+from app.motion.basics import G_MPS2, role_of
 from app.motion.samples import Sample
 from app.session import Session
 from app.settings import Settings

@@ -64,12 +64,9 @@ def footprint(number: int, turn_per_m: float) -> Footprint:
 
 def foot(t_s: float, role: Role = Role.FOOT, turn_per_m: float = 0.06, name: str = "a") -> FootView:
     place, yaw, pitch = pose(t_s, turn_per_m)
-    before = pose(t_s - 1e-3, turn_per_m)[0]
     count, swing = progress(t_s)
-    velocity = tuple((a - b) / 1e-3 for a, b in zip(place, before, strict=True))
     return FootView(
         sensor=role.value, role=role, t_s=t_s, position_n=place,
-        velocity_n=(velocity[0], velocity[1], velocity[2]),
         q_nb=from_yaw_pitch_roll(yaw, pitch, 0.0), phase=GaitPhase.SWING if swing > 0 else GaitPhase.STANCE,
         levelled=True, strides=count, distance_m=count * STRIDE_M, speed_mps=STRIDE_M / STRIDE_S,
         cadence_spm=120 / STRIDE_S, height_m=-place[2], to_start_m=math.hypot(place[0], place[1]),

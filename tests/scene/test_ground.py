@@ -6,7 +6,8 @@ import pytest
 from app.rotation import rotate
 from app.scene import ground
 from app.scene.colours import css, theme
-from app.scene.page import NED_WXYZ, Scene, in_view
+from app.scene.follow import NED_WXYZ
+from app.scene.page import Scene, in_view
 from app.scene.shoe import SENSOR_HEIGHT_M
 
 

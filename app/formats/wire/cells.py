@@ -7,9 +7,8 @@ import re
 from itertools import pairwise
 from statistics import median
 
-from app.formats.units import G_MPS2
 from app.formats.wire.columns import find_columns
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import G_MPS2, Quaternion, Vector
 
 _CLOCK = re.compile(r"(\d{1,2}):(\d{1,2}):(\d{1,2}(?:\.\d*)?)")
 _JSON = json.JSONDecoder(parse_int=str, parse_float=str)

@@ -13,12 +13,11 @@ from dataclasses import dataclass
 
 from app.formats.mounting import AS_GIVEN, Axes
 from app.formats.saturation import RANGES
-from app.formats.units import G_MPS2
 from app.formats.wire.making import Maker, Taker, quantised, scaled
 from app.formats.wire.stream import NO_PACKET, Frames, find_first
 from app.formats.wire.ticks import DeviceClock, TickLength
 from app.formats.wire.warmth import believed
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import G_MPS2, Quaternion, Vector
 from app.motion.samples import Sample
 from app.rotation import conjugate, from_yaw_pitch_roll, pitch_of, roll_of, yaw_of
 

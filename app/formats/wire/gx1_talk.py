@@ -20,7 +20,7 @@ from app.formats.wire.gx1 import (
 from app.formats.wire.pace import Pace
 from app.formats.wire.talk import Ask, FindAnswer, RefusedError, Script
 from app.formats.wire.warmth import warming
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import G_MPS2, Quaternion, Vector
 from app.motion.samples import Sample
 from app.rotation import conjugate, rotate
 
@@ -168,7 +168,7 @@ def _unit(axis: int) -> Vector:
 # --- being a unit --------------------------------------------------------------------------------
 
 _ARGUMENTS = {0x08: 1, 0x09: 5, 0x0F: 3, 0x10: 2, 0x11: 3, 0x28: 2, 0x29: 6, 0x40: 2, 0x42: 5}
-_REST = Sample("", 0, 0, 0, (0.0, 0.0, -9.80665), (0.0, 0.0, 0.0), (20.0, 0.0, 40.0))
+_REST = Sample("", 0, 0, 0, (0.0, 0.0, -G_MPS2), (0.0, 0.0, 0.0), (20.0, 0.0, 40.0))
 
 
 class Gx1Device:

@@ -11,8 +11,7 @@ import numpy as np
 
 from app.formats.mounting import Axes, rotation
 from app.formats.saturation import Range
-from app.formats.units import G_MPS2
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import G_MPS2, Quaternion, Vector
 from app.motion.samples import Sample
 from app.rotation import conjugate, multiply
 

@@ -13,12 +13,11 @@ from itertools import accumulate
 
 from app.formats.mounting import AS_GIVEN, Axes
 from app.formats.saturation import RANGES, Range
-from app.formats.units import G_MPS2
 from app.formats.wire.making import Maker, Taker, in_g, scaled
 from app.formats.wire.stream import UNKNOWN_YET, Frames, find_header
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
 from app.formats.wire.warmth import believed
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import G_MPS2, Quaternion, Vector
 from app.motion.samples import Sample
 
 FASTEST_HZ = 1000.0

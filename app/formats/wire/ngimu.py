@@ -11,7 +11,6 @@ import struct
 
 from app.formats.mounting import Axes
 from app.formats.saturation import RANGES
-from app.formats.units import G_MPS2
 from app.formats.wire.making import (
     NWU,
     RAD_PER_DEG,
@@ -27,7 +26,7 @@ from app.formats.wire.pace import Pace
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_first
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
 from app.formats.wire.warmth import RATE_HZ, believed, warming
-from app.motion.basics import Quaternion
+from app.motion.basics import G_MPS2, Quaternion
 from app.motion.samples import GAP_NS, Sample
 
 FASTEST_HZ = 400.0

@@ -17,11 +17,10 @@ from typing import NamedTuple
 
 from app.formats.mounting import Axes, parse_axes
 from app.formats.options import FEET
-from app.formats.units import G_MPS2
 from app.formats.wire.making import scaled
 from app.formats.wire.message import MOST_NS, Malformed, Message
 from app.formats.wire.readings import Readings
-from app.motion.basics import InputError, Vector
+from app.motion.basics import G_MPS2, InputError, Vector
 from app.motion.samples import Sample
 
 #: On top of the shoe, screen up, top edge to the toe.

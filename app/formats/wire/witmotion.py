@@ -14,14 +14,13 @@ from datetime import date
 
 from app.formats.mounting import Axes
 from app.formats.saturation import RANGES
-from app.formats.units import G_MPS2
 from app.formats.wire.making import ENU, Z_UP, Maker, Taker, quantised, scaled
 from app.formats.wire.pace import Pace
 from app.formats.wire.stream import NO_PACKET, UNKNOWN_YET, Frames, find_header
 from app.formats.wire.talk import Ask, Script
 from app.formats.wire.ticks import ArrivalClock, DeviceClock
 from app.formats.wire.warmth import believed, warming
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import G_MPS2, Quaternion, Vector
 from app.motion.samples import GAP_NS, Sample
 
 FASTEST_HZ = 200.0

@@ -11,13 +11,12 @@ from typing import Any, Protocol
 import numpy as np
 
 from app.formats.mounting import AS_GIVEN, Axes, rotation
-from app.formats.units import G_MPS2
 from app.formats.wire import gx1, lines, mip, ngimu, witmotion, ximu3, xsens
 from app.formats.wire.catalogue import Decoder, Model
 from app.formats.wire.faults import Line
 from app.formats.wire.making import Z_UP
 from app.formats.wire.talk import Script, Talk
-from app.motion.basics import Quaternion, Vector
+from app.motion.basics import G_MPS2, Quaternion, Vector
 from app.motion.samples import Sample
 
 DEG = math.pi / 180

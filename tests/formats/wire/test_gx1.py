@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from app.formats.units import G_MPS2
 from app.formats.wire.gx1 import (
     EULER,
     FACTORY_TICK_NS,
@@ -16,6 +15,7 @@ from app.formats.wire.gx1 import (
     Gx1Setup,
     framed,
 )
+from app.motion.basics import G_MPS2
 from app.motion.samples import Sample
 from tests.formats.wire.protocols import FLOAT32, GX1_SETUP, at_rest
 

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats.mounting import AS_GIVEN
-from app.formats.units import G_MPS2
 from app.formats.wire.gx1 import EULER, LENGTHS, QUATERNION, VECTORS, Gx1Decoder, Gx1Setup, frames, holds
 from app.formats.wire.gx1_talk import FACTORY, FASTEST, Gx1Device, start_up, version
+from app.motion.basics import G_MPS2
 from app.rotation import from_yaw_pitch_roll
 from tests.formats.wire.protocols import at_rest, converse, result
 

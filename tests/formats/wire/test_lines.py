@@ -5,9 +5,8 @@ import math
 import numpy as np
 import pytest
 
-from app.formats.units import G_MPS2
 from app.formats.wire.lines import LinesDecoder, LinesEncoder
-from app.motion.basics import InputError
+from app.motion.basics import G_MPS2, InputError
 from app.motion.samples import Sample
 
 HEADER = b"t_ms,ax_g,ay_g,az_g,gx_dps,gy_dps,gz_dps,mx_ut,my_ut,mz_ut\n"

@@ -10,8 +10,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats.mounting import parse_axes
-from app.formats.units import G_MPS2
 from app.formats.wire.lsl import CHANNELS, SHOE_AXES, Channel, StreamReader, row, sensor_of
+from app.motion.basics import G_MPS2
 from app.motion.samples import Sample
 
 SAMPLE = Sample("left", 0, 10_000_000_000, 7, (0.1, 0.2, -9.8), (1.0, 2.0, 3.0), (20.0, 1.0, 44.0))

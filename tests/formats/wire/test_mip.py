@@ -5,7 +5,6 @@ import struct
 import numpy as np
 import pytest
 
-from app.formats.units import G_MPS2
 from app.formats.wire.mip import (
     ACCEL,
     GYRO,
@@ -18,6 +17,7 @@ from app.formats.wire.mip import (
     fletcher,
     packet,
 )
+from app.motion.basics import G_MPS2
 from app.motion.samples import Sample
 
 COMMANDS = (

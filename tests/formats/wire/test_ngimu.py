@@ -5,7 +5,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.formats.units import G_MPS2
 from app.formats.wire.ngimu import (
     NgimuDecoder,
     NgimuEncoder,
@@ -17,6 +16,7 @@ from app.formats.wire.ngimu import (
     time_tag,
     unframed,
 )
+from app.motion.basics import G_MPS2
 from app.motion.samples import GAP_NS
 from tests.formats.wire.protocols import at_rest
 

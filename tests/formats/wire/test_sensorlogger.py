@@ -14,9 +14,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from app.formats.mounting import parse_axes
-from app.formats.units import G_MPS2
 from app.formats.wire.message import Malformed, Message
 from app.formats.wire.sensorlogger import ON_TOP, Phone, Push, parse
+from app.motion.basics import G_MPS2
 from app.motion.samples import Sample
 
 START = 1_700_000_000_000_000_000

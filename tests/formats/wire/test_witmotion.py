@@ -5,7 +5,6 @@ import math
 import numpy as np
 import pytest
 
-from app.formats.units import G_MPS2
 from app.formats.wire.witmotion import (
     ACCEL,
     ANGLES,
@@ -21,6 +20,7 @@ from app.formats.wire.witmotion import (
     holds,
     start_up,
 )
+from app.motion.basics import G_MPS2
 from app.motion.samples import GAP_NS, Sample
 from tests.formats.wire.protocols import at_rest, converse, result
 

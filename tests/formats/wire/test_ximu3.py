@@ -7,7 +7,6 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.formats.units import G_MPS2
 from app.formats.wire.ximu3 import (
     Ximu3Decoder,
     Ximu3Encoder,
@@ -17,6 +16,7 @@ from app.formats.wire.ximu3 import (
     holds,
     parse,
 )
+from app.motion.basics import G_MPS2
 from tests.formats.wire.protocols import at_rest
 
 BINARY = bytes.fromhex("C9 DBDD DBDC 000000000000 0000803F 00000040 00004040 00000000 00000000 0000803F 0A")
