@@ -11,10 +11,10 @@ import numpy as np
 from app.blocks import BLOCK, Blocks
 from app.estimator.tracker import Tracker
 from app.gestures.default import DefaultDecoder, DefaultSettings
-from app.gestures.intake import FEET, Intake
+from app.gestures.intake import Intake
 from app.gestures.machines import FootNow, History, feet_now, thresholds
 from app.gestures.papers import PapersDecoder
-from app.gestures.words import SILENCE_NS, UNKNOWN_Q, FootReading, standing
+from app.gestures.words import FEET, SILENCE_NS, UNKNOWN_Q, FootReading, standing
 from app.motion.basics import Quaternion, Role
 from app.motion.estimate import ATTITUDE
 from app.motion.samples import SAMPLE_WIDTH, Sample

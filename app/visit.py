@@ -113,15 +113,12 @@ SWITCHES: Mapping[str, tuple[str, bool, str]] = {
 
 
 class FootLight(NamedTuple):
-    """One foot as the decoder hears it now: a word of ``LIGHTS``, and how lively (0 to 1)."""
+    """One foot as the decoder hears it now, and how lively (0 to 1)."""
 
     role: Role
-    state: str
+    state: str  # still, moves, step, twist, back, taps, silent, missing, rubbish
     size: float
     rate_hz: float
-
-
-LIGHTS = ("still", "moves", "step", "twist", "back", "taps", "silent", "missing", "rubbish")
 
 
 class Machines(NamedTuple):
@@ -156,7 +153,6 @@ class Goal(NamedTuple):
     east: float
     radius_m: float
     distance_m: float
-    bearing_rad: float  # from where the walker looks, clockwise
 
 
 @dataclass(frozen=True)

@@ -292,7 +292,7 @@ class Visiting:
             feet=hearing.lights(self._decided_ns), fault=fault,
             message=self.message or self.trouble or hearing.intake.note(),
             halted=self.halted, touching=w.touching,
-            goal=hunts.goal(self.hunt, w.north, w.east, w.heading_rad), score=self.hunt.found,
+            goal=hunts.goal(self.hunt, w.north, w.east), score=self.hunt.found,
             targets=len(self.hunt.order), hunt_s=self.hunt.seconds, best_s=self.hunt.best_s,
             reached=self.hunt.found > 0 and self.hunt.cheering,
             task=None if self.guide is None else self.guide.task, decoder=hearing.name,

@@ -58,11 +58,10 @@ def go_on(hunt: Hunt, north: float, east: float, moving: bool, dt_s: float) -> H
     return replace(hunt, found=found, seconds=seconds, running=not done, reached_s=seconds, best_s=best)
 
 
-def goal(hunt: Hunt, north: float, east: float, heading_rad: float) -> Goal | None:
-    """How far and which way the target is from here."""
+def goal(hunt: Hunt, north: float, east: float) -> Goal | None:
+    """The target, and how far it is from here."""
     target = hunt.target
     if target is None:
         return None
-    away_n, away_e = target.north - north, target.east - east
-    bearing = math.remainder(math.atan2(away_e, away_n) - heading_rad, math.tau)
-    return Goal(target.north, target.east, target.radius_m, math.hypot(away_n, away_e), bearing)
+    away_m = math.hypot(target.north - north, target.east - east)
+    return Goal(target.north, target.east, target.radius_m, away_m)

@@ -10,11 +10,10 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 
 from app.clocks import LiveClock
-from app.gestures.words import SILENCE_NS, FootReading
+from app.gestures.words import FEET, SILENCE_NS, FootReading
 from app.motion.basics import Role
 from app.motion.samples import Sample
 
-FEET = (Role.LEFT, Role.RIGHT)
 _OTHER = {Role.LEFT: Role.RIGHT, Role.RIGHT: Role.LEFT}
 NAMES = {Role.LEFT: "left foot", Role.RIGHT: "right foot"}
 _RATE_SAMPLES = 50

@@ -9,7 +9,8 @@ import numpy as np
 
 from app.gestures import state as s
 from app.gestures.default import DefaultDecoder
-from app.gestures.papers import FEET, PapersDecoder
+from app.gestures.papers import PapersDecoder
+from app.gestures.words import FEET
 from app.motion.basics import Floats
 from app.visit import Machines
 

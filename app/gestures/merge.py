@@ -6,7 +6,7 @@ from collections.abc import Iterator, Mapping
 
 import numpy as np
 
-from app.gestures.words import UNKNOWN_Q, Decision, Decoder, FootReading, standing
+from app.gestures.words import FEET, UNKNOWN_Q, Decision, Decoder, FootReading, standing
 from app.motion.basics import Floats, Role
 from app.motion.samples import Column, Samples
 
@@ -15,7 +15,7 @@ def readings(
     feet: Mapping[Role, Samples], orientation: Mapping[Role, Floats] | None = None
 ) -> Iterator[FootReading]:
     """Both feet's samples merged by their stamps. ``orientation``: q_nb [n, 4] of each foot, if known."""
-    roles = [role for role in (Role.LEFT, Role.RIGHT) if role in feet]
+    roles = [role for role in FEET if role in feet]
     stamps = [
         feet[role].device_ns + feet[role].matrix[:, Column.ELAPSED_NS].astype(np.int64) for role in roles
     ]

@@ -6,9 +6,10 @@ from app.compiled import kernel, part
 from app.gestures import state as s
 from app.gestures.foot import REST_CYCLES, reset_foot, step_foot
 from app.gestures.state import BACK, STEP, TOE_UP, TWIST, UNKNOWN, Foot, Pair, Record, Tuning
+from app.motion.basics import MotionId
 
-_NONE, _FORWARD, _FORWARD_RIGHT, _FORWARD_LEFT, _SIDE_RIGHT, _SIDE_LEFT, _TURN_CW, _TURN_CCW, _BACKWARD = (
-    range(9)
+_, _FORWARD, _FORWARD_RIGHT, _FORWARD_LEFT, _SIDE_RIGHT, _SIDE_LEFT, _TURN_CW, _TURN_CCW, _BACKWARD = map(
+    int, MotionId
 )
 _USUAL_CYCLE_S = 1.0
 _DUTY = 2.35  # cycles are about so many actions long

@@ -8,11 +8,10 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass, field
 
-from app.gestures.words import SILENCE_NS, Decision, FootReading, standing
+from app.gestures.words import FEET, SILENCE_NS, Decision, FootReading, standing
 from app.motion.basics import MotionId, Quaternion, Role
 from app.rotation import yaw_of
 
-FEET = (Role.LEFT, Role.RIGHT)
 _GAP_S = 1.0  # a foot back after so long starts anew
 
 

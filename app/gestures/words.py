@@ -10,6 +10,8 @@ from app.motion.basics import MotionId, Quaternion, Role, Vector
 SILENCE_NS = 150_000_000
 #: Before the class is certain the camera moves gently, m/s.
 GENTLE_MPS = 0.3
+#: In this order wherever feet are numbered.
+FEET = (Role.LEFT, Role.RIGHT)
 UNKNOWN_Q: Quaternion = (1.0, 0.0, 0.0, 0.0)
 
 

@@ -34,10 +34,9 @@ from app.simulate.gestures_actions import (
 from app.simulate.gestures_options import GESTURES, Bar, GestureOptions, bars_of, parse, spec_of
 from app.simulate.gestures_steps import Course, Steps, sum_of
 from app.simulate.sensors import TABLE_II_NOISE, SensorErrors, ideal_readings, read
-from app.simulate.walk import sample_times_ns
+from app.simulate.walk import MOST_SAMPLES, sample_times_ns
 
 FEET = ("left", "right")
-_MOST_SAMPLES = 20_000_000
 #: What each foot does in each motion: left, right.
 PARTS: Mapping[MotionId, tuple[str, str]] = {
     MotionId.FORWARD: ("march", "march"),
@@ -108,7 +107,7 @@ class SimulatedGestures:
 
 
 def make_gestures(options: Mapping[str, str]) -> SimulatedGestures:
-    """The gestures that a SPEC's query asks for; ``motion.InputError`` says what is wrong with it."""
+    """The gestures that a SPEC's query asks for; ``InputError`` says what is wrong with it."""
     return simulate(parse(options))
 
 
@@ -117,7 +116,7 @@ def simulate(options: GestureOptions) -> SimulatedGestures:
     performer = Performer(options, np.random.default_rng([options.seed, 1]))
     for bar in _script(options, np.random.default_rng([options.seed, 2])):
         performer.perform(bar)
-    if performer.now_s * options.rate_hz * 2 > _MOST_SAMPLES:
+    if performer.now_s * options.rate_hz * 2 > MOST_SAMPLES:
         raise InputError(
             f"sim:gestures: {performer.now_s:.0f} s at {options.rate_hz:g} Hz: expected a shorter script"
         )
@@ -262,7 +261,7 @@ def _sensor(name: str, foot: GestureFoot, elapsed_ns: Floats, options: GestureOp
 
 
 def _truth(feet: Mapping[str, GestureFoot], sensor: str, t_s: Floats) -> tuple[Floats, Floats]:
-    """The ``motion.Truth`` of the gestures."""
+    """The ``Truth`` of the gestures."""
     if sensor not in feet:
         raise ValueError(f"no sensor {sensor!r} in these gestures: expected one of {', '.join(feet)}")
     motion = feet[sensor].at(t_s)

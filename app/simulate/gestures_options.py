@@ -29,7 +29,7 @@ def _number(default: float, low: float, high: float, sentence: str) -> Any:
 
 @dataclass(frozen=True)
 class GestureOptions:
-    """Two feet and their sensors. A number out of range raises ``motion.InputError``.
+    """Two feet and their sensors. A number out of range raises ``InputError``.
 
     ``cadence_hz`` counts whole cycles: both feet once each, or the one foot of a one-foot gesture
     once; every bout has its own, within 8 % of it. ``script`` is ``WHAT:SECONDS,…`` or
@@ -61,7 +61,7 @@ class GestureOptions:
 
 
 def bars_of(script: str) -> tuple[Bar, ...]:
-    """A script's entries, or one ``random`` with its bouts; ``motion.InputError`` says what is wrong."""
+    """A script's entries, or one ``random`` with its bouts; ``InputError`` says what is wrong."""
     bars = tuple(_bar(part) for part in script.split(","))
     if len(bars) > 1 and any(bar.what == "random" for bar in bars):
         raise InputError("sim:gestures: script: expected random:BOUTS alone, without other entries")
@@ -85,7 +85,7 @@ def _bar(part: str) -> Bar:
 
 
 def parse(texts: Mapping[str, str]) -> GestureOptions:
-    """The options of a SPEC's query; raises ``motion.InputError`` that says what is known."""
+    """The options of a SPEC's query; raises ``InputError`` that says what is known."""
     known = {f.name for f in fields(GestureOptions)}
     short = {name.rpartition("_")[0]: name for name in known if "_" in name}
     values: dict[str, Any] = {}

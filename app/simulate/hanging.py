@@ -45,7 +45,7 @@ class HangingSensor(NamedTuple):
 
 
 def make_pendulum(texts: Mapping[str, str]) -> HangingSensor:
-    """The pendulum a SPEC's query asks for; ``motion.InputError`` says what is wrong with it."""
+    """The pendulum a SPEC's query asks for; ``InputError`` says what is wrong with it."""
     unknown = sorted(set(texts) - set(OPTIONS))
     if unknown:
         raise InputError(f"sim:pendulum: unknown option {unknown[0]!r}: expected one of {', '.join(OPTIONS)}")

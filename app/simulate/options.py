@@ -52,7 +52,7 @@ class WalkOptions:
 
     The errors are none unless asked for. ``noise`` and ``bias`` scale Table II of the 2012 paper
     for all sensors at once; a sensor's own value overrides them. A bias is a vector in body axes.
-    An unknown word, a number out of range or a contradiction raises ``motion.InputError``.
+    An unknown word, a number out of range or a contradiction raises ``InputError``.
     """
 
     model: str = _option("smooth", "the foot model", kind="choice", choices=MODELS)
@@ -122,7 +122,7 @@ class WalkOptions:
 
 
 def parse(texts: Mapping[str, str]) -> WalkOptions:
-    """The options of a SPEC's query; raises ``motion.InputError`` that says what is known."""
+    """The options of a SPEC's query; raises ``InputError`` that says what is known."""
     known = {f.name: f.metadata["option"] for f in fields(WalkOptions)}
     values: dict[str, Any] = {}
     short = {key.removesuffix(unit): key for key in known for unit in UNITS if key.endswith(unit)}

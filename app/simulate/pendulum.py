@@ -15,10 +15,8 @@ from scipy.integrate import solve_ivp
 
 from app.motion.basics import Floats, Vector
 from app.motion.samples import SAMPLE_WIDTH
-from app.simulate.sensors import MICROTESLA_PER_GAUSS
+from app.simulate.sensors import DIP_RAD, FIELD_UT
 
-#: Dissertation, III-G: |B_e| and its inclination.
-FIELD_GAUSS, DIP_RAD = 0.486, math.radians(60.483)
 _EXACT = 1e-12
 
 
@@ -77,7 +75,7 @@ def read(
     force_bias_mps2: Vector = (0.0, 0.0, 0.0),
     motion: bool = True,
 ) -> Floats:
-    """What the sensor reads at these seconds [n, 10], columns as ``motion.Column``: (3.73)–(3.75).
+    """What the sensor reads at these seconds [n, 10], columns as ``Column``: (3.73)–(3.75).
 
     ``motion`` off leaves out what the swing itself adds to the specific force (Fig. 42).
     """
@@ -88,8 +86,8 @@ def read(
     samples[:, 1] = moved * acceleration + g * np.sin(angle)
     samples[:, 3] = -moved * rate**2 - g * np.cos(angle)
     samples[:, 5] = rate
-    samples[:, 7] = MICROTESLA_PER_GAUSS * FIELD_GAUSS * np.cos(DIP_RAD + angle)
-    samples[:, 9] = MICROTESLA_PER_GAUSS * FIELD_GAUSS * np.sin(DIP_RAD + angle)
+    samples[:, 7] = FIELD_UT * np.cos(DIP_RAD + angle)
+    samples[:, 9] = FIELD_UT * np.sin(DIP_RAD + angle)
     samples[:, 1:4] += force_bias_mps2
     samples[:, 4:7] += gyro_bias_radps
     return samples

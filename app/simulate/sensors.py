@@ -19,12 +19,9 @@ from app.simulate.foot import Motion, rotate_to_body
 from app.simulate.options import WalkOptions
 
 MICROTESLA_PER_GAUSS = 100.0
-#: The field of dissertation eq. 4.12: 0.486 gauss, dipping 60.483°.
-FIELD_N_UT: Vector = (
-    48.6 * math.cos(math.radians(60.483)),
-    0.0,
-    48.6 * math.sin(math.radians(60.483)),
-)
+#: The field of dissertation eq. 4.12 and III-G: 0.486 gauss, dipping 60.483°.
+FIELD_UT, DIP_RAD = 48.6, math.radians(60.483)
+FIELD_N_UT: Vector = (FIELD_UT * math.cos(DIP_RAD), 0.0, FIELD_UT * math.sin(DIP_RAD))
 #: Table II: noise σ and bias μ of accelerometer m/s², gyro rad/s and magnetometer µT.
 TABLE_II_NOISE = (0.033, 0.0076, 0.082)
 TABLE_II_BIAS = (0.0981, 7.25e-6, 0.24)
@@ -129,6 +126,6 @@ def rounded(readings: Floats, decimals: int | None) -> Floats:
 
 
 def saturation_bits(raw: Floats, full_scale: Floats) -> NDArray[np.uint16]:
-    """Bit i of each row [n] is set where channel i of 9 is at or past its range (see ``motion.Sample``)."""
+    """Bit i of each row [n] is set where channel i of 9 is at or past its range (see ``Sample``)."""
     bits: NDArray[np.uint16] = ((np.abs(raw) >= full_scale) @ (1 << np.arange(9))).astype(np.uint16)
     return bits

@@ -26,7 +26,7 @@ from app.simulate.sensors import MICROTESLA_PER_GAUSS, Iron, errors_of, ideal_re
 
 #: Where a sensor walks, to the right of the path.
 _BESIDE_M = {"foot": 0.0, "left": -0.1, "right": 0.1}
-_MOST_SAMPLES = 20_000_000
+MOST_SAMPLES = 20_000_000
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Plan:
 
 
 def make_walk(options: Mapping[str, str]) -> SimulatedWalk:
-    """The walk that a SPEC's query asks for; ``motion.InputError`` says what is wrong with it."""
+    """The walk that a SPEC's query asks for; ``InputError`` says what is wrong with it."""
     return simulate(parse(options))
 
 
@@ -91,9 +91,9 @@ def plan_of(options: WalkOptions, course: Course) -> Plan:
         distance = 120.0 if options.path == "straight" else (options.laps or 1) * course.length_m
     strides = strides or max(1, round(distance / stride))
     duration = options.duration_s or around + (strides + extra) * options.cycle_s
-    if duration * options.rate_hz * options.feet > _MOST_SAMPLES:
+    if duration * options.rate_hz * options.feet > MOST_SAMPLES:
         raise InputError(
-            f"sim:walk: {duration:.0f} s at {options.rate_hz:g} Hz: expected at most {_MOST_SAMPLES} samples:"
+            f"sim:walk: {duration:.0f} s at {options.rate_hz:g} Hz: expected at most {MOST_SAMPLES} samples:"
             " walk less far or sample more slowly"
         )
     return Plan(distance, strides, duration)
@@ -160,7 +160,7 @@ def _read(
 
 
 def _truth(feet: Mapping[str, FootMotion], sensor: str, t_s: Floats) -> tuple[Floats, Floats]:
-    """The ``motion.Truth`` of the walk."""
+    """The ``Truth`` of the walk."""
     if sensor not in feet:
         raise ValueError(f"no sensor {sensor!r} in this walk: expected one of {', '.join(feet)}")
     motion = feet[sensor].at(t_s)

@@ -190,7 +190,7 @@ def test_a_device_tells_the_range() -> None:
 
 
 def obeys(recording: Recording) -> None:
-    """The promises of ``motion.Samples``."""
+    """The promises of ``Samples``."""
     assert recording.sensors
     for samples in recording.sensors:
         assert len(samples) > 0

@@ -10,8 +10,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.gestures.papers import FEET, FootMachines, PapersDecoder, PapersSettings, overall
-from app.gestures.words import FootReading
+from app.gestures.papers import FootMachines, PapersDecoder, PapersSettings, overall
+from app.gestures.words import FEET, FootReading
 from app.motion.basics import MotionId, Role
 from app.rotation import from_yaw
 from tests.gestures.feet import LEVEL

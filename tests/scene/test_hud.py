@@ -50,7 +50,7 @@ def test_every_motion_has_words(visit: Visit) -> None:
 
 def test_goal_and_task_are_told(visit: Visit) -> None:
     task = Task("March", "Both feet.", 0.5, 2, 5, None, "")
-    state = told(replace(visit, goal=Goal(3.0, 4.0, 1.5, 5.2, 0.1), task=task))
+    state = told(replace(visit, goal=Goal(3.0, 4.0, 1.5, 5.2), task=task))
     assert state["goal"] == {"north": 3.0, "east": 4.0, "metres": 5}
     assert state["task"]["title"] == "March"
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from app.simulate.pendulum import DIP_RAD, Pendulum, read, swing
+from app.simulate.pendulum import Pendulum, read, swing
+from app.simulate.sensors import DIP_RAD
 
 T = np.linspace(0.0, 10.0, 2001)
 
