@@ -102,7 +102,7 @@ def _card(foot: FootView, of_sensor: str) -> str:
         ("Cadence", words.number(foot.cadence_spm, 0), "steps/min"),
         ("Height", words.number(foot.height_m), "m"),
         ("To start", *words.metres(foot.to_start_m)),
-        ("of distance", words.percent(foot.to_start_m, foot.distance_m), ""),
+        ("of distance", words.percent(_closure_m(foot), foot.distance_m), ""),
         known or ("Walked", words.clock(foot.t_s), ""),
     ]
     grid = "".join(tile(*one) for one in tiles)
@@ -198,6 +198,12 @@ def source(snapshot: Snapshot, status: Status) -> str:
 def _health(rate_hz: float, taken: int, segments: int) -> str:
     plural = "" if segments == 1 else "s"
     return f"{words.number(rate_hz, 1)} Hz, {taken} samples, {segments} segment{plural}"
+
+
+def _closure_m(foot: FootView) -> float:
+    """From the start to the last footprint, which is as far as ``distance_m`` counts, also in a swing."""
+    north, east, _ = foot.footprints[-1].position_n if foot.footprints else foot.position_n
+    return math.hypot(north, east)
 
 
 def _own(own: OwnView) -> str:

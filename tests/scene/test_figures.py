@@ -71,7 +71,7 @@ def test_a_pose_that_is_no_number_is_said() -> None:
 
 def test_every_figure_has_its_unit() -> None:
     text = read(figures.feet(fakes.snapshot(9.7))).text
-    for said in ("Strides8", "10.80 m", "m/s", "steps/min", "105.7 %", "0.12 m"):
+    for said in ("Strides8", "10.80 m", "m/s", "steps/min", "98.3 %", "0.12 m"):
         assert said in text
 
 
@@ -160,3 +160,13 @@ def test_how_a_sensor_sits_on_its_shoe_is_told() -> None:
         told = figures.feet(replace(alone, main=alone.main._replace(feet=feet)))
         assert "Toe direction found from 5 strides" in told
         assert how in told
+
+
+def test_the_share_of_the_distance_is_that_of_the_last_footprint_also_in_a_swing() -> None:
+    first = fakes.footprint(1, 0.0)._replace(position_n=(1.2, 0.0, 0.0))
+    swinging = fakes.foot(2.0)._replace(
+        position_n=(2.3, 0.0, -0.1), to_start_m=2.3, distance_m=1.2, footprints=(first,)
+    )
+    snapshot = fakes.snapshot(2.0)
+    snapshot = replace(snapshot, main=snapshot.main._replace(feet=(swinging,)))
+    assert "100.0 %" in read(figures.feet(snapshot)).text

@@ -80,7 +80,7 @@ def test_what_is_no_number_never_reaches_viser(scene: Scene, bad: float) -> None
     graph = good.graphs["foot"]
     spoiled = {"foot": graph._replace(statistic=np.where(graph.t_s > 5, bad, graph.statistic))}
     shot = with_foot(
-        good, position_n=(bad, 0.0, 0.0), velocity_n=(bad,) * 3, q_nb=(bad,) * 4, distance_m=bad,
+        good, position_n=(bad, 0.0, 0.0), q_nb=(bad,) * 4, distance_m=bad,
         speed_mps=bad,
         cadence_spm=bad, height_m=bad, to_start_m=bad, error_m=bad, footprints=(print_,),
         trail=Trail((piece,), growing, provisional),
