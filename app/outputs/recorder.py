@@ -69,6 +69,7 @@ class Recorder:
         self._pending = b""  # the chunk being written
         self._lost = 0  # samples that found the queue full, and how many of them the file tells
         self._told = 0
+        self._handed = self._written = 0  # samples: into the queue, and of those into the file
         self._trouble = ""
         self._free = 0
         self._began_s = time.monotonic()
@@ -97,6 +98,7 @@ class Recorder:
         """A sample as it was taken."""
         if len(self._queue) < MOST_WAITING:
             self._queue.append(sample)
+            self._handed += 1
         elif not self._over.is_set():
             self._lost += 1
 
@@ -168,9 +170,14 @@ class Recorder:
         )
 
     def close(self, wait_s: float = 1.5) -> None:
-        """Write what waits, and the end. A disk that takes longer than ``wait_s`` keeps what it has."""
+        """Write what waits, and the end; what a disk does not take in ``wait_s`` is said."""
         self._over.set()
         self._thread.join(wait_s)
+        missing = self._lost + self._handed - self._written
+        if self._thread.is_alive() and missing:
+            self._trouble = f"the disk was too slow: its last {missing} samples are not recorded"
+        if self.state.trouble:
+            log.warning("%s: %s", self.path, self.state.trouble)
 
     # --- the recorder's own thread -----------------------------------------------------------------
 
@@ -197,10 +204,12 @@ class Recorder:
 
     def _keep(self, finish: Callable[[], bytes]) -> None:
         """Everything that waits into one chunk on the disk."""
+        samples = 0
         for _ in range(len(self._queue)):
             item = self._queue.popleft()
             if isinstance(item, Sample):
                 self._keeper.sample(item)
+                samples += 1
             else:
                 method, arguments = item
                 method(self._keeper, *arguments)
@@ -215,6 +224,7 @@ class Recorder:
         if self._pending:
             self._size = self._write(self._pending, self._size)
             written, self._pending = self._pending, b""
+            self._written += samples
             self._syncer.wrote(written)
         took = max(time.monotonic() - began, self._syncer.slow_s)
         if took > SLOW_S:

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import textwrap
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -164,6 +165,29 @@ def test_a_queue_that_is_full_is_told_and_counted(tmp_path: Path, monkeypatch: p
     kept_samples = kept.samples(found)
     assert kept_samples == samples[: len(kept_samples)]
     assert [e["samples"] for e in found.events if e["event"] == "lost"] == [80 - len(kept_samples)]
+
+
+def test_what_the_disk_did_not_take_in_time_is_said_at_the_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """A disk that hangs from the second chunk on: Ctrl-C does not wait for it, and is not silent about it."""
+    samples, hangs, write = random_samples(150), threading.Event(), Recorder._write
+
+    def hang(recorder: Recorder, data: bytes, size: int) -> int:
+        hangs.wait(60.0)
+        return write(recorder, data, size)
+
+    recorder = a_recorder(tmp_path)
+    for sample in samples[:50]:
+        recorder.sample(sample)
+    wait_for(lambda: recorder._written == 50)
+    monkeypatch.setattr(Recorder, "_write", hang)
+    for sample in samples[50:]:
+        recorder.sample(sample)
+    recorder.close(0.5)
+    hangs.set()
+    assert "its last 100 samples are not recorded" in recorder.state.trouble
+    assert "its last 100 samples are not recorded" in caplog.text
 
 
 def test_a_sample_that_is_lost_while_the_loss_is_told_is_counted(
