@@ -13,7 +13,8 @@ from app.estimator import state as s
 from app.estimator.gait import STANCE, SWING
 from app.estimator.kalman import step
 from app.estimator.kalman_state import RING, RING_P, RING_Q, KalmanState
-from app.estimator.running import run_of
+from app.estimator.papers import reading_at
+from app.estimator.running import first_changed, is_told
 from app.estimator.state import Record
 from app.motion.basics import Floats, Quaternion
 from app.rotation import exponential, multiply, normalise
@@ -114,4 +115,26 @@ def turn_row(row: Floats, turn: Quaternion) -> None:
     row[6], row[7], row[8], row[9] = normalise(multiply(turn, (row[6], row[7], row[8], row[9])))
 
 
-run = kernel(run_of(step, write_row, write_event, correct))
+@kernel
+def run(
+    state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats
+) -> tuple[int, int]:
+    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 13]: see ``running.py``.
+
+    Stops early when ``events`` [m, 22] is full. Returns the next sample's place and the events' count.
+    """
+    now = state[0]
+    count = 0
+    for i in range(begin, end):
+        if count == events.shape[0]:
+            return i, count
+        happened = step(now, reading_at(samples, i))
+        write_row(rows, i, now)
+        if happened & s.REPORTED:
+            event = events[count]
+            write_event(event, now, happened)
+            first = first_changed(event, i)
+            if first >= 0:
+                correct(rows[first : i + 1], int(event[e.LIFT_ROW]) + 1, samples[first : i + 1], event, state)
+            count += is_told(event, first, happened)
+    return end, count

@@ -6,9 +6,9 @@ from app.compiled import kernel, part
 from app.estimator import events as e
 from app.estimator import state as s
 from app.estimator.corrections import correct
-from app.estimator.papers import step
-from app.estimator.running import run_of
-from app.estimator.state import State
+from app.estimator.papers import reading_at, step
+from app.estimator.running import first_changed, is_told
+from app.estimator.state import Record, State
 from app.estimator.strapdown import bias_of_swing
 from app.motion.basics import Floats
 
@@ -35,4 +35,26 @@ def write_event(event: Floats, now: State, happened: int) -> None:
         event[e.START], event[e.START + 1], event[e.START + 2] = now.from_x, now.from_y, now.from_z
 
 
-run = kernel(run_of(step, write_row, write_event, correct))
+@kernel
+def run(
+    state: Record, samples: Floats, rows: Floats, begin: int, end: int, events: Floats
+) -> tuple[int, int]:
+    """Step through ``samples`` [k, 10] from ``begin`` to ``end`` into ``rows`` [k, 13]: see ``running.py``.
+
+    Stops early when ``events`` [m, 22] is full. Returns the next sample's place and the events' count.
+    """
+    now = state[0]
+    count = 0
+    for i in range(begin, end):
+        if count == events.shape[0]:
+            return i, count
+        happened = step(now, reading_at(samples, i))
+        write_row(rows, i, now)
+        if happened & s.REPORTED:
+            event = events[count]
+            write_event(event, now, happened)
+            first = first_changed(event, i)
+            if first >= 0:
+                correct(rows[first : i + 1], int(event[e.LIFT_ROW]) + 1, samples[first : i + 1], event, state)
+            count += is_told(event, first, happened)
+    return end, count
