@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import select
 import socket
@@ -12,7 +13,8 @@ from collections.abc import Mapping
 from app.formats.wire.catalogue import KINDS
 from app.formats.wire.datagrams import Datagrams
 from app.motion.basics import InputError
-from app.sources.catcher import Catcher
+from app.motion.samples import Sample
+from app.sources.catcher import Catcher, Datagram
 from app.sources.inbox import REST_S, Inbox
 from app.sources.listening import bind, options_of, place_of
 from app.sources.spec import Spec
@@ -53,10 +55,14 @@ class UdpSource(Inbox):
         self._thread.start()
 
     def close(self) -> None:
-        """Stop listening and free the port."""
+        """Stop listening and free the port; what was caught by then is still taken."""
         self._closed.set()
         self._catcher.end()
         self._thread.join(1.0)
+        if not self._thread.is_alive():
+            with contextlib.suppress(EOFError, OSError, ValueError):
+                while self._fetch():
+                    pass
         self._catcher.close()
         self._socket.close()
 
@@ -82,7 +88,19 @@ class UdpSource(Inbox):
         """Take what was caught, and look again a little later: many datagrams cost one turn."""
         while not self._closed.is_set():
             if select.select([self._catcher.fileno], [], [], _LOOK_S)[0]:
-                feed = self._datagrams.feed
-                caught = self._catcher.fetch()
-                self.put([s for d in caught for s in feed(d.data, (d.host, d.port), d.host_ns)])
+                self._fetch()
                 time.sleep(REST_S)
+
+    def _fetch(self) -> int:
+        """Take what was caught; how many datagrams that were."""
+        caught = list(self._catcher.fetch())
+        self.put([sample for datagram in caught for sample in self._samples(datagram)])
+        return len(caught)
+
+    def _samples(self, datagram: Datagram) -> list[Sample]:
+        """A fault of the program costs one datagram, and is seen."""
+        try:
+            return self._datagrams.feed(datagram.data, (datagram.host, datagram.port), datagram.host_ns)
+        except Exception:
+            _log.exception("%s: a datagram of %s could not be read", self.info.name, datagram.host)
+            return []

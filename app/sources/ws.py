@@ -137,6 +137,8 @@ class WsSource(Inbox):
                     await asyncio.sleep(_PAUSE_S)
         except ConnectionClosed:
             pass
+        except Exception:  # which its server's logger would hide
+            _log.exception("%s: a sender's message could not be taken", self.info.name)
         finally:
             self._connected -= 1
 

@@ -82,6 +82,25 @@ def test_any_bytes_are_answered_with_a_reason_and_harm_nobody() -> None:
     asyncio.run(main())
 
 
+def test_a_fault_of_the_program_is_seen(
+    monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    def falter(*_: object) -> None:
+        raise KeyError("a fault")
+
+    async def main() -> None:
+        source = WsSource(parse_spec("ws:0"))
+        monkeypatch.setattr(source._intake, "take", falter)
+        async with connect(address(source)) as sender:
+            await sender.send(encode_json(1, walk(5)))
+            with pytest.raises(ConnectionClosed):
+                await sender.recv()
+        source.close()
+
+    asyncio.run(main())
+    assert "could not be taken" in caplog.text
+
+
 def test_a_browsers_page_is_not_let_in() -> None:
     async def main() -> None:
         source = WsSource(parse_spec("ws:0"))
