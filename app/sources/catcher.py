@@ -27,6 +27,7 @@ MOST_BYTES = 64 * 1024 * 1024
 HEAD = struct.Struct("<QIHIH")
 _LARGEST = 65_536
 _AT_ONCE = 256  # datagrams taken before what waits is handed on
+_AT_LAST = 1000  # pieces that may wait when the program ends: who floods must not keep it
 _PIPE_BYTES = 1024 * 1024
 _READ_BYTES = 4 * 1024 * 1024
 _READY = b"\n"
@@ -85,13 +86,14 @@ class Catcher:
         self._rest = data[at:]
 
     def end(self) -> None:
-        """End the process: what it handed on can still be fetched."""
-        self._process.kill()
-        self._process.wait()
+        """Have the process hand on what has come, and end: ``fetch`` it until it says so."""
+        if self._process.stdin is not None:
+            self._process.stdin.close()
 
     def close(self) -> None:
-        """End it and close the pipes."""
-        self.end()
+        """End it at once and close the pipes."""
+        self._process.kill()
+        self._process.wait()
         for pipe in (self._process.stdin, self._process.stdout):
             if pipe is not None:
                 pipe.close()
@@ -108,6 +110,7 @@ def catch(bound: socket.socket, out: int, ends: int) -> None:
         to_write = [out] if waiting else []
         readable, writable, _ = select.select([bound.fileno(), ends], to_write, [])
         if ends in readable:
+            _hand_on_all(bound, waiting, lost, out)
             return
         if bound.fileno() in readable:
             caught, lost = _take(bound, lost, size < MOST_BYTES)
@@ -147,6 +150,18 @@ def _hand_on(waiting: deque[bytes], out: int) -> int:
     if written < len(piece):
         waiting.appendleft(piece[written:])
     return written
+
+
+def _hand_on_all(bound: socket.socket, waiting: deque[bytes], lost: int, out: int) -> None:
+    """The program ends, and waits for what has come by now; one that has ended closes the pipe."""
+    while (taken := _take(bound, lost, len(waiting) < _AT_LAST))[0]:
+        lost = taken[1]
+        waiting.append(taken[0])
+    os.set_blocking(out, True)
+    for piece in waiting:
+        rest = memoryview(piece)
+        while rest:
+            rest = rest[os.write(out, rest) :]
 
 
 def _main() -> None:

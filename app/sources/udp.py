@@ -24,6 +24,7 @@ _log = logging.getLogger(__name__)
 #: Asked of the system, which may give less: datagrams wait here while the machine is busy.
 BUFFER_BYTES = 4 * 1024 * 1024
 _LOOK_S = 0.2  # between looks whether to end
+_LAST_S = 0.5  # for what came before it was closed
 _AGAIN_S = 1.0  # before another process is begun for one that ended
 
 
@@ -59,10 +60,11 @@ class UdpSource(Inbox):
         self._closed.set()
         self._catcher.end()
         self._thread.join(1.0)
-        if not self._thread.is_alive():
-            with contextlib.suppress(EOFError, OSError, ValueError):
-                while self._fetch():
-                    pass
+        until_s = time.monotonic() + _LAST_S
+        with contextlib.suppress(EOFError, OSError, ValueError):
+            while not self._thread.is_alive() and (left_s := until_s - time.monotonic()) > 0.0:
+                select.select([self._catcher.fileno], [], [], left_s)
+                self._fetch()
         self._catcher.close()
         self._socket.close()
 

@@ -14,6 +14,7 @@ import struct
 
 from app.formats.mounting import Axes
 from app.formats.saturation import RANGES
+from app.formats.wire.decimals import Decimals
 from app.formats.wire.making import (
     NWU,
     RAD_PER_DEG,
@@ -99,6 +100,11 @@ def _parse_ascii(message: bytes) -> Message | None:
     return (kind, micros, numbers) if len(numbers) in _ARGUMENTS.get(kind, ()) else None
 
 
+def _cells(message: bytes) -> list[str]:
+    """The numbers of a message in ASCII as they are printed."""
+    return message.rstrip().decode("ascii", "replace").split(",")[2:]
+
+
 def _parse_binary(message: bytes) -> Message | None:
     kind, body = chr(message[0] - 0x80), message[1:-1]
     if 0xDB in body:
@@ -126,6 +132,7 @@ class Ximu3Decoder:
         self.counters = self._frames.counters
         self._maker = Maker(sensor, axes, RANGES["ximu3"], earth)
         self._clock = DeviceClock(TICK_NS, 64)
+        self._decimals = Decimals()  # of inertial messages in ASCII
         self._field: tuple[float, ...] = ()
         self._orientation: tuple[float, ...] = ()
         self.temperature_c: float | None = None  # newest, °C
@@ -135,7 +142,9 @@ class Ximu3Decoder:
         samples = []
         for message in self._frames.feed(data):
             kind, micros, numbers = (message[0] >= 0x41 and parse(message)) or ("", 0, ())
-            if kind == "I":
+            if kind == "I" and message[0] < 0x80 and not self._decimals.hold(_cells(message)):
+                self._frames.spoil(message)
+            elif kind == "I":
                 sample = self._read(micros, numbers, host_ns)
                 self.counters.dropped += sample is None
                 samples += [] if sample is None else [sample]

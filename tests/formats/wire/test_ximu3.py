@@ -7,6 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from app.formats.wire.faults import Faults, Line
+from app.formats.wire.making import Z_UP
 from app.formats.wire.ximu3 import (
     Ximu3Decoder,
     Ximu3Encoder,
@@ -17,6 +19,7 @@ from app.formats.wire.ximu3 import (
     parse,
 )
 from app.motion.basics import G_MPS2
+from app.motion.samples import Sample
 from tests.formats.wire.protocols import at_rest
 
 BINARY = bytes.fromhex("C9 DBDD DBDC 000000000000 0000803F 00000040 00004040 00000000 00000000 0000803F 0A")
@@ -97,3 +100,22 @@ def test_deep_json_is_only_rubbish() -> None:
     stream = frames()
     stream.feed(b'{"a":' + b"[" * 1000 + b"\n" + ASCII)
     assert stream.counters.packets == 1
+
+
+def test_a_lost_byte_of_an_ascii_message_is_told_by_its_decimals() -> None:
+    """They have no checksum: of one hundred bytes one is lost, and most often it is a decimal."""
+    rng = np.random.default_rng(5)
+    encoder, decoder = Ximu3Encoder(Z_UP, binary=False), Ximu3Decoder("foot")
+    line, sent, got = Line(Faults(lost=0.01), 3), [], []
+    for i in range(4000):
+        force, turn = rng.normal(0.0, 8.0, 3), rng.normal(0.0, 2.0, 3)
+        sample = Sample("foot", i, i * 10_000_000, 0, tuple(force), tuple(turn))
+        message = encoder.inertial(sample)
+        sent += Ximu3Decoder("foot").feed(message, 0)
+        samples = decoder.feed(message if i < 500 else line.carry(message), i * 10_000_000)
+        got += samples
+    true = {(s.specific_force_b, s.angular_rate_b) for s in sent}
+    false = sum((s.specific_force_b, s.angular_rate_b) not in true for s in got)
+    assert len(got) > 2500
+    assert false <= 0.15 * (len(got) - 500)
+    assert decoder.counters.bad_checksum > 500
