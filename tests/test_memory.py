@@ -8,15 +8,21 @@ import numpy as np
 import pytest
 
 from app.blocks import BLOCK
+from app.memory import Memory
+from app.motion.basics import Role
 from app.motion.commands import (
     ApplyCandidate,
     ResetHeading,
     SetCandidate,
 )
-from app.motion.samples import Sample
+from app.motion.estimate import ROW_WIDTH
+from app.motion.recording import Landing, Stretch
+from app.motion.samples import SAMPLE_WIDTH, Rows, Sample, Samples
 from app.rotation import from_yaw, rotate, yaw_of
 from app.session import Session
 from app.settings import Settings
+from app.stores import SensorStore
+from app.tracks import Track
 from tests.estimator.walks import PAPERS, estimate, foot, rows_of
 from tests.sessions import (
     GAIN,
@@ -35,12 +41,14 @@ def budgeted(budget: int, samples: Iterable[Sample], settings_: Settings = PAPER
     return fed(Session(settings_, budget_bytes=budget), samples)
 
 
-ROOM = 7 * BLOCK * 8 * (10 + 2 + 2 * 12)  # seven blocks of samples, clocks, main and a candidate
+#: A sample, its arrival and flags, a row of the main track and one of a candidate.
+ROW_BYTES = 8 * (SAMPLE_WIDTH + 2 + 2 * ROW_WIDTH)
+ROOM = 7 * BLOCK * ROW_BYTES
 
 
 def test_over_the_budget_the_oldest_block_goes_and_the_page_is_told() -> None:
     session = Session(PAPERS, budget_bytes=ROOM)
-    block = BLOCK * 8 * (10 + 2 + 2 * 12)
+    block = BLOCK * ROW_BYTES
     for i, sample in enumerate(LONG):
         session.take(sample)
         if i == 20_000:
@@ -116,3 +124,33 @@ def test_a_result_that_comes_after_blocks_have_gone_is_the_same(late: int) -> No
     fed(session, LONG[30_000 + late :])
     assert np.isfinite(main_rows(session)).all()
     assert session.stored_bytes <= ROOM
+
+
+def test_what_is_stored_is_all_that_every_sample_takes() -> None:
+    session = budgeted(ROOM, LONG[: BLOCK + 1])
+    assert session.stored_bytes == 2 * BLOCK * 8 * (SAMPLE_WIDTH + 2 + ROW_WIDTH)
+    tell(session, GAIN)
+    assert session.stored_bytes == 2 * BLOCK * ROW_BYTES
+
+
+def landing(first: int, last: int) -> Landing:
+    samples = Samples("foot", Role.FOOT, 0, np.zeros((last, SAMPLE_WIDTH)), np.zeros(last, np.uint16))
+    return Landing(Stretch((Rows(samples, first, last),), 0, list), {}, {}, lambda: iter(()))
+
+
+def test_a_landing_goes_on_where_the_walk_ends_and_leaves_half_of_the_memory() -> None:
+    main, stores = Track("main", PAPERS), dict[str, SensorStore]()
+    memory = Memory(2 * 1000 * ROW_BYTES, stores)
+    assert memory.has_room_for(landing(0, 999), main)
+    assert not memory.has_room_for(landing(0, 1000), main)
+    assert not memory.has_room_for(landing(5, 999), main)
+    store = stores["foot"] = SensorStore("foot", Role.FOOT)
+    for sample in LONG[:5]:
+        store.take(sample)
+    roomy = Memory(10 * BLOCK * ROW_BYTES, stores)
+    assert roomy.has_room_for(landing(5, 999), main)
+    assert not roomy.has_room_for(landing(0, 999), main)
+    taken = store.samples.nbytes + store.clocks.nbytes
+    tight = Memory(2 * (994 * ROW_BYTES + taken), stores)
+    assert not tight.has_room_for(landing(5, 999), main)
+    assert tight.has_room_for(landing(5, 998), main)
