@@ -200,3 +200,57 @@ def test_the_report_is_json() -> None:
 )
 def test_a_share_is_told_in_percent(share: float, told: str) -> None:
     assert percent(share) == told
+
+
+#: A sound sensor's last ten seconds.
+GOOD = Recent(
+    rate_hz=100.0, samples=1000, lost=0, duplicated=0, rejected=0, saturated=0, jitter_ms=0.1, late_ms=1.0,
+    stance_mps2=0.1, gravity_mps2=9.81, disturbance=0.02, drift_ppm=10.0, silent_s=0.0,
+)  # fmt: skip
+NO_LIGHT = (Light.GREEN, None)
+
+
+@pytest.mark.parametrize(
+    ("what", "value", "light", "said"),
+    [
+        ("silent_s", 0.5, *NO_LIGHT),
+        ("silent_s", 0.6, Light.RED, "silent for 0.6 s"),
+        ("cut_s", 0.4, Light.AMBER, "nothing came from it for 0.4 s"),
+        ("lost", 10, *NO_LIGHT),
+        ("lost", 11, Light.AMBER, "1.1 % of samples lost"),
+        ("lost", 52, Light.AMBER, "4.9 % of samples lost"),
+        ("lost", 53, Light.RED, "5 % of samples lost"),
+        ("late_ms", 99.9, *NO_LIGHT),
+        ("late_ms", 100.0, Light.AMBER, "up to 100 ms late"),
+        ("late_ms", 499.9, Light.AMBER, "up to 500 ms late"),
+        ("late_ms", 500.0, Light.RED, "up to 500 ms late"),
+        ("rejected", 10, *NO_LIGHT),
+        ("rejected", 11, Light.AMBER, "1.1 % of samples are no use"),
+        ("rejected", 112, Light.RED, "10 % of samples are no use"),
+        ("duplicated", 11, Light.AMBER, "1.1 % of samples came twice"),
+        ("duplicated", 112, Light.RED, "10 % of samples came twice"),
+        ("rate_hz", 50.0, *NO_LIGHT),
+        ("rate_hz", 49.0, Light.AMBER, "49 samples a second: set the sensor to 50 or more"),
+        ("rate_hz", 0.0, *NO_LIGHT),
+        ("drift_ppm", 500.0, *NO_LIGHT),
+        ("drift_ppm", 501.0, Light.AMBER, "0.05 % too fast"),
+        ("drift_ppm", -2000.0, Light.AMBER, "0.2 % too slow"),
+        ("saturated", 19, *NO_LIGHT),
+        ("saturated", 20, Light.AMBER, "2 % of samples at the end"),
+        ("saturated", 100, Light.RED, "10 % of samples at the end"),
+        ("stance_mps2", 1.4, *NO_LIGHT),
+        ("stance_mps2", 1.5, Light.AMBER, "shakes by 1.5 m/s²"),
+        ("stance_mps2", 4.0, Light.RED, "shakes by 4.0 m/s²"),
+        ("gravity_mps2", 10.15, *NO_LIGHT),
+        ("gravity_mps2", 10.16, Light.AMBER, "gravity reads 10.16 m/s²"),
+        ("gravity_mps2", 9.45, Light.AMBER, "gravity reads 9.45 m/s²"),
+        ("disturbance", 0.2, *NO_LIGHT),
+        ("disturbance", 0.25, Light.AMBER, "strays by 25 %"),
+    ],
+)
+def test_each_limit_has_its_light_and_its_figure(
+    what: str, value: float, light: Light, said: str | None
+) -> None:
+    got, reason = judge(Role.LEFT, Recent(**GOOD._asdict() | {what: value}), uses_field=True)
+    assert got is light
+    assert reason == "" if said is None else reason.startswith("left foot: ") and said in reason
