@@ -10,11 +10,9 @@ from app.blocks import Blocks
 from app.clocks import Clock, FixedClock
 from app.estimator.feet import Worn
 from app.motion.basics import Role, Vector
-from app.motion.samples import SAMPLE_WIDTH, Rows, Sample
+from app.motion.samples import BACKWARD, MOST_READ, NOT_FINITE, REPEATED, SAMPLE_WIDTH, Rows, Sample
 
 NO_FIELD = (math.nan, math.nan, math.nan)
-#: m/s², rad/s or µT: no sensor reads that, and its square would spoil every sum (as in formats/clean).
-MOST = 1e6
 
 
 class SensorStore:
@@ -36,12 +34,12 @@ class SensorStore:
         """Keep a sample if it is finite and later than the last one; say whether."""
         force, rate, field = sample.specific_force_b, sample.angular_rate_b, sample.field_b
         if not (_plausible(force) and _plausible(rate)):
-            return self._drop("not a finite number")
+            return self._drop(NOT_FINITE)
         if not self.samples.end:
             self._first_ns = sample.device_ns
         elif sample.device_ns <= self._last_ns:
             same = sample.device_ns == self._last_ns
-            return self._drop("repeated time" if same else "time went backward")
+            return self._drop(REPEATED if same else BACKWARD)
         self._last_ns = sample.device_ns
         self.clock.add(sample.device_ns, sample.host_ns)
         self.samples.grow(1)
@@ -118,7 +116,8 @@ class SensorStore:
 
 
 def _plausible(vector: Vector) -> bool:
-    return abs(vector[0]) < MOST and abs(vector[1]) < MOST and abs(vector[2]) < MOST  # False for NaN
+    x, y, z = vector
+    return abs(x) < MOST_READ and abs(y) < MOST_READ and abs(z) < MOST_READ  # False for NaN
 
 
 def _field_or_none(field: Vector | None) -> Vector:

@@ -13,18 +13,20 @@ import numpy as np
 
 from app.formats.raw import NO_STAMP, RawFoot
 from app.motion.basics import Floats, InputError, Ints, role_of
-from app.motion.samples import GAP_NS, SAMPLE_WIDTH, Samples
+from app.motion.samples import (
+    BACKWARD,
+    GAP_NS,
+    MOST_READ,
+    NOT_FINITE,
+    REPEATED,
+    SAMPLE_WIDTH,
+    Samples,
+)
 
-NOT_FINITE = "not a finite number"
-REPEATED = "repeated time"
-BACKWARD = "time went backward"
 LEAPT = "a time far off"
 
 _MOST_NS = 2**62
 _LONGEST_NS = 2**53  # 104 days: beyond it ELAPSED_NS would not be exact
-_MOST = 1e6  # m/s², rad/s or µT; no sensor reads that, and its square would spoil every sum
-
-
 #: A clock that fell back is believed after so many stamps that follow each other, as live. At a file's end
 #: fewer have to do, where they are further back than anything comes late.
 FELL_BACK, AT_THE_END = 8, 2
@@ -132,7 +134,7 @@ def countable(raw: RawFoot) -> tuple[Ints, dict[str, int]]:
 
 def _usable(raw: RawFoot) -> np.ndarray[tuple[int], np.dtype[np.bool_]]:
     with np.errstate(invalid="ignore"):
-        values = (np.abs(raw.force) < _MOST).all(axis=1) & (np.abs(raw.rate) < _MOST).all(axis=1)
+        values = (np.abs(raw.force) < MOST_READ).all(axis=1) & (np.abs(raw.rate) < MOST_READ).all(axis=1)
     usable: np.ndarray[tuple[int], np.dtype[np.bool_]] = values & (raw.stamps_ns != NO_STAMP)
     if usable.any():  # a first stamp sets the start; what lies beyond the clock's reach is unreadable
         first = int(raw.stamps_ns[np.argmax(usable)])
@@ -157,6 +159,6 @@ def _matrix(raw: RawFoot, rows: Ints, stamps_ns: Ints) -> Floats:
     matrix[:, 4:7] = raw.rate[rows]
     if raw.field is not None:
         with np.errstate(invalid="ignore"):
-            whole = (np.abs(raw.field[rows]) < _MOST).all(axis=1)
+            whole = (np.abs(raw.field[rows]) < MOST_READ).all(axis=1)
         matrix[whole, 7:10] = raw.field[rows[whole]]
     return matrix

@@ -14,6 +14,10 @@ from app.motion.basics import Floats, Quaternion, Role, Vector
 
 #: Two stamps further apart than this are two segments: nothing is integrated across.
 GAP_NS = 250_000_000
+#: m/s², rad/s or µT: no sensor reads that, and its square would spoil every sum.
+MOST_READ = 1e6
+#: Why a sample is dropped, in words, from a file and live.
+NOT_FINITE, REPEATED, BACKWARD = "not a finite number", "repeated time", "time went backward"
 
 
 class Sample(NamedTuple):

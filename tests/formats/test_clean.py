@@ -5,10 +5,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from app.formats.clean import BACKWARD, LEAPT, NOT_FINITE, REPEATED, clean, countable, told_on
+from app.formats.clean import LEAPT, clean, countable, told_on
 from app.formats.raw import NO_STAMP, RawFoot
 from app.motion.basics import InputError
-from app.motion.samples import GAP_NS
+from app.motion.samples import BACKWARD, GAP_NS, NOT_FINITE, REPEATED
 
 STAMPS = st.lists(
     st.one_of(st.integers(-50, 50), st.sampled_from([NO_STAMP, 2**62, -(2**62), 2**53])),
