@@ -57,14 +57,15 @@ class Contents:
     channels: dict[int, mcap.Channel] = field(default_factory=dict)
     gathered: dict[int, Gathered] = field(default_factory=dict)
     closed: bool = False
+    damaged: int = 0  # chunks that the end of the file tells of, and that are not whole
 
 
 def gather(data: bytes, want: Want) -> Contents:
     """Everything whole in a file; ``ValueError`` if a message is too short for the doubles wanted of it."""
-    contents = Contents(closed=mcap.is_closed(data))
+    contents = Contents(closed=mcap.is_closed(data), damaged=_told(data))
     parts: dict[int, list[Gathered]] = {}
     waiting: list[_Page] = []
-    for page in _pages(data, contents.channels):
+    for page in _pages(data, contents):
         rest = _sort(page, contents.channels, want, parts)
         waiting += [rest] if len(rest.rows) else []
     for page in waiting:
@@ -73,12 +74,19 @@ def gather(data: bytes, want: Want) -> Contents:
     return contents
 
 
-def _pages(data: bytes, channels: dict[int, mcap.Channel]) -> Iterator[_Page]:
+def _told(data: bytes) -> int:
+    """How many chunks a closed file has by its summary; 0 where that is not whole."""
+    index = mcap.index(len(data), lambda at, count: data[at : at + count])
+    return 0 if index is None else len(index.chunks)
+
+
+def _pages(data: bytes, contents: Contents) -> Iterator[_Page]:
     """The messages of many chunks at once; channels are put where they belong on the way."""
     place = 0
     for chunks in _together(data):
+        contents.damaged = max(contents.damaged - len(chunks), 0)
         records = b"".join(chunks)
-        rows = _believed(records, chunks, channels)
+        rows = _believed(records, chunks, contents.channels)
         rows = rows[rows[:, At.OPCODE] == MESSAGE]
         yield _Page(records, rows, place + np.arange(len(rows)))
         place += len(rows)

@@ -67,6 +67,7 @@ class Kept:
     markers: tuple[tuple[int, str], ...]
     events: tuple[dict[str, Any], ...]
     closed: bool
+    damaged: int = 0  # chunks
     states: tuple[_Told, ...] = ()
     ways: tuple[_Told, ...] = ()
     messages: dict[str, int] = field(default_factory=dict)  # by topic
@@ -124,6 +125,7 @@ def _kept(contents: Contents) -> Kept:
         markers=tuple((place, text) for place, text in texts if isinstance(text, str)),
         events=tuple(journal.from_json(data) for _, data in said(keeping.EVENTS)),
         closed=contents.closed,
+        damaged=contents.damaged,
         states=_told(contents, keeping.STATE),
         ways=_told(contents, keeping.WAY),
         temperatures=_temperatures(contents),
@@ -365,6 +367,8 @@ def _sentences(found: Kept) -> tuple[str, ...]:
     sentences += [f"read as {device}"] if device else []
     sentences += [f"recorded from {source}"] if source else []
     sentences += [] if found.closed else ["the recording was cut short: what is whole of it is shown"]
+    places = f"{found.damaged} place{'s' * (found.damaged > 1)}"
+    sentences += [f"the file is damaged in {places}: what is whole of it is shown"] if found.damaged else []
     lost = sum(_whole(event.get("samples")) for event in found.events if event.get("event") == "lost")
     sentences += [f"{lost} samples were not recorded: the disk was too slow"] if lost else []
     return tuple(sentences)

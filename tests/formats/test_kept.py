@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import math
 import random
+from collections.abc import Callable
 
 import pytest
 from hypothesis import given, settings
@@ -144,6 +145,10 @@ def test_cut_at_every_byte_a_prefix_is_left() -> None:
         assert len(found) % 3 == 0
 
 
+def reader(data: bytearray) -> Callable[[int, int], bytes]:
+    return lambda at, count: bytes(data[at : at + count])
+
+
 def test_a_flipped_bit_is_an_error_of_one_line_or_costs_one_chunk() -> None:
     samples = random_samples(48)
     data = write(samples, chunk=6)
@@ -152,11 +157,16 @@ def test_a_flipped_bit_is_an_error_of_one_line_or_costs_one_chunk() -> None:
         damaged = bytearray(data)
         damaged[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
         try:
-            found = kept.samples(kept.kept("x", bytes(damaged)))
+            whole = kept.kept("x", bytes(damaged))
         except InputError as error:
             assert "\n" not in str(error)
             continue
+        found = kept.samples(whole)
         assert len(found) >= len(samples) - 6
+        if whole.closed:  # it says so
+            told = any("damaged in 1 place" in line for line in kept.recording_of("x", whole).assumed)
+            assert told == (whole.damaged == 1)
+            assert told or len(found) == len(samples) or mcap.index(len(damaged), reader(damaged)) is None
         assert [sample for sample in samples if sample in found] == found
 
 
