@@ -11,7 +11,7 @@ import pytest
 
 from app.formats.journal import Start
 from app.formats.keeping import Keeper
-from app.motion.basics import InputError
+from app.motion.basics import InputError, Role
 from app.motion.commands import (
     ApplyCandidate,
     Command,
@@ -28,7 +28,7 @@ from app.motion.commands import (
 from app.motion.recording import Landing, Stretch
 from app.motion.samples import Sample
 from app.session import Session
-from app.settings import Settings
+from app.settings import BUILT_IN, Settings
 from app.simulate.walk import make_walk
 from app.sources.opening import open_source
 from app.sources.timeline import Timeline
@@ -183,3 +183,44 @@ def test_a_replay_without_its_changes_has_the_settings_told(live) -> None:
     assert {s: len(t) for s, t in rows(again.main).items()} == {
         s: len(t) for s, t in rows(session.main).items()
     }
+
+
+@pytest.mark.parametrize("named_at", [1, 900, 2500])
+def test_feet_that_a_tap_named_meanwhile_are_linked_in_a_replay_as_they_were_live(
+    named_at: int, tmp_path: Path
+) -> None:
+    """Naming is no order: the recording tells in the end which foot is which, and the walk is the same."""
+    walk = make_walk({"feet": "2", "duration_s": "16", "noise": "1", "bias": "3"}).recording
+    timeline, phones = Timeline(walk), {"left": "phone", "right": "phone-2"}
+    roles = {"phone": Role.LEFT, "phone-2": Role.RIGHT}
+    keeper = Keeper({"source": "test"}, dict.fromkeys(roles, Role.OTHER), 10**18)
+    data = keeper.begin(0)
+    keeper.start(0, Start(BUILT_IN["default"], BUILT_IN["default"], False))
+    live = Session(BUILT_IN["default"], lambda _: Role.OTHER)
+    for i, sample in enumerate(timeline.cut(0, len(timeline), 0)):
+        sample = sample._replace(sensor=phones[sample.sensor])
+        if i >= named_at:  # as each frame does
+            live.name_feet(roles)
+        live.take(sample)
+        keeper.sample(sample)
+    keeper.learnt(1, {"sensors": {sensor: role.value for sensor, role in roles.items()}})
+    path = tmp_path / "walk.mcap"
+    path.write_bytes(data + keeper.end())
+
+    async def again() -> Session:
+        source = open_source(f"replay:{path}?speed=0", finish=True)
+        assert source.settings is not None
+        session = Session(source.settings, lambda sensor: source.info.sensors[sensor])
+        async for item in source:
+            assert isinstance(item, Sample)
+            session.take(item)
+        return session
+
+    replay = asyncio.run(again())
+    assert_same(live.main, replay.main)
+    seen, shown = live.snapshot().main, replay.snapshot().main
+    assert seen.linked
+    assert shown.linked
+    assert [(f.role, f.position_n, f.q_nb) for f in seen.feet] == [
+        (f.role, f.position_n, f.q_nb) for f in shown.feet
+    ]
