@@ -133,16 +133,29 @@ def test_a_source_that_begins_anew_begins_a_new_walk() -> None:
     assert recording.journal.orders == ()
 
 
-def test_cut_at_every_byte_a_prefix_is_left() -> None:
+def cuts(data: bytes) -> list[int]:
+    """Every byte of a record's head and the one before it, and each 29th of what lies between."""
+    found, at = set(range(0, len(data), 29)), len(mcap.MAGIC)
+    while at < len(data) - len(mcap.MAGIC):
+        found |= set(range(at - 1, at + 10))
+        at += 9 + int.from_bytes(data[at + 1 : at + 9], "little")
+    assert at == len(data) - len(mcap.MAGIC)
+    return sorted(found | set(range(at, len(data))))
+
+
+def test_wherever_it_is_cut_a_prefix_is_left() -> None:
     samples = random_samples(24)[::2]
     data = write(samples, chunk=3)
-    for length in range(len(data)):
+    lengths = set()
+    for length in cuts(data):
         try:
             found = kept.samples(kept.kept("x", data[:length]))
         except InputError:
             continue
         assert found == samples[: len(found)]
         assert len(found) % 3 == 0
+        lengths.add(len(found))
+    assert lengths >= {3, 6, 9, 12}
 
 
 def reader(data: bytearray) -> Callable[[int, int], bytes]:

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from app.formats.mounting import parse_axes
@@ -90,6 +90,7 @@ def test_the_uncalibrated_ones_unit_is_told_by_its_size(sign: float, unit: float
     assert any("in g" in note for note in phone.notes) == (unit != 1.0)
 
 
+@settings(max_examples=20)
 @given(st.integers(0, 10**6))
 def test_messages_out_of_order_and_twice_give_the_same(seed: int) -> None:
     bodies = pushes(15)

@@ -54,11 +54,12 @@ def test_silence_is_asked_again_then_passed_over() -> None:
     assert not talk.receive(b"ok")
 
 
-@pytest.mark.parametrize("size", [1, 20_000])
+@pytest.mark.parametrize("size", [1, 1000])
 def test_a_stream_beside_the_answer_is_not_kept_for_ever(size: int) -> None:
     talk = Talk(script())
     talk.expire()
-    for _ in range(20_000 // size + 1):
+    talk.receive(b"." * 16_300)
+    for _ in range(200):
         talk.receive(b"." * size)
-    assert len(talk.left_over) <= 16384
+        assert len(talk.left_over) <= 16384
     assert talk.receive(b"ok")
