@@ -26,6 +26,8 @@ Tell = Callable[[int, int], None]
 """(tasks done, of so many)."""
 #: A pool that loses a worker is made anew so often before it counts as a fault of the task.
 LIVES = 3
+#: A cluster that does not answer for so long is not there.
+ANSWERS_S = 10.0
 
 
 def run_task(task: Task) -> Done:
@@ -142,7 +144,7 @@ def _end_with_parent() -> None:
 def _on_cluster(tasks: Sequence[Task], address: str, tell: Tell) -> list[Done]:
     dask = _dask()
     try:
-        client = dask.Client(address, timeout="10s")
+        client = dask.Client(address, timeout=ANSWERS_S)
     except (OSError, TimeoutError, ValueError) as error:
         raise InputError(
             f"--cluster {address}: {error}: expected the address of a running Dask scheduler,"

@@ -13,6 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import pytest
 
+from app import workers
 from app.__main__ import main
 from app.studies.monte_carlo import WalkConfig, walk_many
 from app.studies.words import Task
@@ -95,7 +96,10 @@ def test_the_cluster_gives_the_same_bits_and_survives_a_kill(cluster: Cluster) -
     assert cluster.workers[1].poll() is None
 
 
-def test_no_scheduler_is_one_line(capsys: pytest.CaptureFixture[str]) -> None:
+def test_no_scheduler_is_one_line(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(workers, "ANSWERS_S", 1.0)
     assert main(["study", "gait", "--json", "--cluster", "tcp://127.0.0.1:9"]) == 2
     error = capsys.readouterr().err.strip().splitlines()[-1]
     assert "--cluster tcp://127.0.0.1:9" in error

@@ -273,13 +273,13 @@ def program(*arguments: str, **environment: str) -> subprocess.CompletedProcess[
     )  # fmt: skip
 
 
-@pytest.mark.timeout(400)  # compiles everything
+@pytest.mark.timeout(400)  # compiles the smaller estimator: nothing is kept
 def test_a_home_that_cannot_be_written_and_odd_words_in_the_environment(tmp_path: Path) -> None:
     """A home below a plain file: no configuration, no cache."""
     (tmp_path / "file").write_text("")
     home = str(tmp_path / "file" / "home")
     done = program(
-        "process", "sim:walk?strides=1", "--json",
+        "process", "sim:walk?strides=1", "--profile", "papers", "--json",
         HOME=home, XDG_CONFIG_HOME=home, XDG_CACHE_HOME=home, STRIDESCOPE_LOG="loud",
     )  # fmt: skip
     assert (done.returncode, done.stderr) == (0, "")
