@@ -5,6 +5,7 @@ tests/scene/test_private.py is the contract: run it before any other version of 
 
 from __future__ import annotations
 
+import asyncio
 import contextlib
 import io
 import socket
@@ -27,7 +28,25 @@ def open_server(label: str) -> viser.ViserServer:
     for message in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(message)
     server._websock_server.on_client_connect(partial(_hold_little, server))
+    buffer = server._websock_server._broadcast_buffer
+    buffer.message_event = _OnItsLoop(buffer.event_loop)
     return server
+
+
+class _OnItsLoop(asyncio.Event):
+    """viser sets it from any thread and then again on its loop, where alone that is safe.
+
+    The first is left out: it would, while a browser comes or goes, end in "deque mutated during iteration".
+    """
+
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        super().__init__()
+        self._its = loop
+
+    def set(self) -> None:
+        """Wake who waits, if this is the loop's own thread."""
+        if asyncio._get_running_loop() is self._its:
+            super().set()
 
 
 def _hold_little(server: viser.ViserServer, client: Any) -> None:

@@ -2,8 +2,13 @@
 
 from __future__ import annotations
 
+import asyncio
 import socket
+import threading
+from collections import deque
+from collections.abc import Iterator
 from importlib.metadata import version
+from typing import Any
 
 from viser import _messages
 
@@ -73,3 +78,31 @@ def test_two_scenes_have_two_ports(scene: Scene) -> None:
         assert other.get_port() != scene.port
     finally:
         private.close_server(other)
+
+
+class Visited(deque[Any]):
+    """Notes which threads went through it."""
+
+    def __init__(self, held: deque[Any]) -> None:
+        super().__init__(held)
+        self.threads = set[int]()
+
+    def __iter__(self) -> Iterator[Any]:
+        self.threads.add(threading.get_ident())
+        return super().__iter__()
+
+
+def test_only_visers_own_thread_wakes_who_waits_for_messages(scene: Scene) -> None:
+    """Another thread would meet browsers that come and go: "deque mutated during iteration"."""
+    buffer = scene._server._websock_server._broadcast_buffer
+    buffer.message_event._waiters = visited = Visited(buffer.message_event._waiters)
+
+    async def wait() -> bool:
+        buffer.message_event.clear()
+        return await buffer.message_event.wait()
+
+    woken = asyncio.run_coroutine_threadsafe(wait(), buffer.event_loop)
+    until(lambda: len(visited) > 0)
+    scene._server.scene.add_frame("/anything")
+    assert woken.result(timeout=90.0)
+    assert threading.get_ident() not in visited.threads
