@@ -46,6 +46,10 @@ KEYS_NS = 350_000_000
 TAKEN_NS, STROLL_NS = 2_000_000_000, 12_000_000_000
 #: Nobody moves for so long: the next visitor; a warning before.
 IDLE_S, WARNING_S = 75.0, 15.0
+#: Another operator's "go on" so soon after a stop was pressed by somebody who had not seen it.
+UNSEEN_NS = 700_000_000
+STIRRING = ("moves", "step", "twist", "back", "taps")
+FRESH = "the next visitor: stand still for a moment, then march"
 AGAIN_S = 8.0  # after the last target the stroller begins anew
 _WISHES = {
     "f": MotionId.FORWARD, "b": MotionId.BACKWARD, "l": MotionId.TURN_CCW, "r": MotionId.TURN_CW,
@@ -80,6 +84,9 @@ class Visiting:
         self.trouble = ""  # of the sensors' lines, which keeps nobody from walking
         self.visitors: tuple[str, ...] = ()
         self.halted = False
+        self._halted_ns = -UNSEEN_NS
+        self._fresh = False  # the last visitor's gesture is not over yet
+        self._swapped_before = False  # the set-up
         self._keys, self._keyed_ns = "", -STROLL_NS
         self._start_ns: int | None = None  # of the simulated feet's clock
         self._now_ns: int | None = None
@@ -99,8 +106,7 @@ class Visiting:
     def take(self, sample: Sample) -> None:
         """A sensor's sample."""
         reading = self.sensors.take(sample)
-        listened = self.guide is not None and not self._fault and not self._puppeteered(sample.host_ns)
-        if reading is not None and self.guide is not None and listened:
+        if reading is not None and self.guide is not None and not self._hindrance(sample.host_ns):
             self.guide.take(reading)
 
     def begin_anew(self) -> None:
@@ -114,15 +120,13 @@ class Visiting:
                 self._keys, self._keyed_ns = "".join(sorted(set(keys))), now_ns
                 self._busy_ns = now_ns
             case Halt():
-                self.halted = True
+                self.halted, self._halted_ns = True, now_ns
             case GoOn():
-                self.halted = False
+                self.halted = self.halted and now_ns - self._halted_ns < UNSEEN_NS
             case NextVisitor():
                 self.reset(now_ns)
             case SetUp(on):
-                self.guide = SetUpGuide(self.sensors.settings) if on else None
-                self.sensors.swap(self.sensors.intake.swapped and not on)
-                self.switches["swapped"] = self.sensors.intake.swapped
+                self._set_up(on)
             case ChooseDecoder(name):
                 self._choose(name)
             case Tune(name, value):
@@ -137,9 +141,30 @@ class Visiting:
         self.walker = Walker()
         self.hunt = hunts.begin(self.town, self.walker.north, self.walker.east, self.hunt.best_s)
         self.guide, self.message, self._busy_ns = None, "", None
+        self._fresh, self._start_ns, self._stroller = True, None, None
         self.obey(Switch("swapped", False), now_ns)
         for name in ("on_radps", "sure_rad"):
             self._tune(name, TUNABLE[name].default)
+
+    def _set_up(self, on: bool) -> None:
+        """Begin with the feet as they are worn; who leaves it leaves all as it was."""
+        swapped = self.sensors.intake.swapped
+        if self.guide is None:
+            self._swapped_before = swapped
+        elif not on:
+            swapped = self._swapped_before
+        self.guide = SetUpGuide(self.sensors.settings) if on else None
+        self.obey(Switch("swapped", swapped and not on), 0)
+
+    def _hindrance(self, now_ns: int) -> str:
+        """What keeps the set-up from listening to the feet, in words."""
+        if self.halted:
+            return "Stopped by the operator: this begins anew at Go on."
+        if self._fault:
+            return "A sensor was silent: this begins anew as soon as both are heard."
+        if self._puppeteered(now_ns) and not self.simulated:
+            return "The keys have taken over: this begins anew once they are let go."
+        return ""
 
     def use(self, values: dict[str, float | bool]) -> None:
         """Thresholds of a visitor who was here before."""
@@ -208,7 +233,8 @@ class Visiting:
             return standing(now_ns, fault)
         if self.guide is not None:
             return standing(now_ns, "the set-up is under way")
-        return hearing.decision
+        self._fresh = self._fresh and hearing.decision.motion is not MotionId.NONE
+        return standing(now_ns, FRESH) if self._fresh else hearing.decision
 
     def _move_puppets(self, now_ns: int) -> None:
         """The simulated feet do what the keys or the stroller ask, as samples like any."""
@@ -224,7 +250,7 @@ class Visiting:
         self._live.ask(wish.motion, wish.turn_size)
         for sample in self._live.advance((now_ns - self._start_ns) * 1e-9, self._start_ns, now_ns):
             reading = self._puppets.take(sample)
-            if reading is not None and self.guide is not None:
+            if reading is not None and self.guide is not None and self.simulated and not self.halted:
                 self.guide.take(reading)
         self._puppets.listen(now_ns)
 
@@ -258,8 +284,9 @@ class Visiting:
         return round(EYE_M + self._depth * math.sin(self._bob), 4)
 
     def _go_on_with_guide(self) -> None:
-        if self.guide is not None and self._fault:
-            self.guide.wait()
+        hindrance = self._hindrance(self._decided_ns)
+        if self.guide is not None and hindrance:
+            self.guide.wait(hindrance)
         if self.guide is None or not self.guide.over or self.guide.fitted is None:
             return
         fitted, self.guide = self.guide.fitted, None
@@ -267,7 +294,11 @@ class Visiting:
 
     def _watch_idle(self, now_ns: int) -> None:
         """Nobody moves, but somebody had begun: the next visitor finds the start."""
-        if self.decision.motion is not MotionId.NONE or self.guide is not None:
+        moves = self.decision.motion is not MotionId.NONE
+        if self._busy_ns is not None:
+            stirs = any(f.state in STIRRING for f in self._heard(now_ns).lights(self._decided_ns))
+            moves = moves or stirs or self.halted
+        if moves or (self.guide is not None and self._busy_ns is None):
             self._busy_ns = now_ns
         if self._idle_s(now_ns) >= IDLE_S:
             self.reset(now_ns)

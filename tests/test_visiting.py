@@ -205,3 +205,92 @@ def test_the_same_visit_twice_is_the_same() -> None:
         return [(v.north, v.east) for v in visits]
 
     assert places() == places()
+
+
+def test_the_next_visitor_does_not_walk_on_with_the_last_ones_feet(sensors: Sensors) -> None:
+    """In the middle of a march: at rest at the start until the feet have stood still, then as ever."""
+    sensors.walking()
+    sensors.visiting.obey(NextVisitor(), sensors.now_ns)
+    visits = sensors.frames(3.0)
+    assert {(v.north, v.speed_mps, v.hunt_s, v.score) for v in visits} == {(-30.0, 0.0, 0.0, 0)}
+    assert "stand still" in visits[-1].reason
+    sensors.feet.ask(MotionId.NONE)
+    assert sensors.frames(2.0)[-1].speed_mps == 0.0
+    sensors.feet.ask(MotionId.FORWARD)
+    assert sensors.frames(4.0)[-1].speed_mps > 0.8
+
+
+def test_the_next_visitor_of_simulated_feet_sets_off_from_rest() -> None:
+    visiting = Visiting(TOWN, simulated=GestureOptions())
+    walked = [visiting.step(k * FRAME_NS) for k in range(600)]
+    visiting.obey(NextVisitor(), 600 * FRAME_NS)
+    again = [visiting.step(k * FRAME_NS) for k in range(600, 1200)]
+    assert again[0].motion is MotionId.NONE
+    assert [v.motion for v in again[5:]] == [v.motion for v in walked[5:600]][: len(again) - 5]
+    assert math.hypot(again[-1].north + 30.0, again[-1].east) > 1.0
+
+
+def test_an_emergency_stop_outlasts_another_operators_go_on_that_had_not_seen_it(sensors: Sensors) -> None:
+    sensors.walking()
+    sensors.visiting.obey(Halt(), sensors.now_ns)
+    sensors.visiting.obey(GoOn(), sensors.now_ns + 200_000_000)
+    assert sensors.frames(1.0)[-1].halted
+    sensors.visiting.obey(GoOn(), sensors.now_ns)
+    assert sensors.frames(3.0)[-1].speed_mps > 0.5
+
+
+def test_a_stop_in_the_set_up_begins_its_step_anew(sensors: Sensors) -> None:
+    sensors.frames(1.0)
+    sensors.visiting.obey(SetUp(True), sensors.now_ns)
+    sensors.frames(4.0)
+    sensors.feet.ask(MotionId.FORWARD)
+    sensors.frames(1.0)
+    sensors.visiting.obey(Halt(), sensors.now_ns)
+    task = sensors.frames(8.0)[-1].task
+    assert task is not None
+    assert (task.title, task.part) == ("March in place", 0.0)
+    assert "Stopped" in task.note
+    sensors.visiting.obey(GoOn(), sensors.now_ns)
+    titles = [visit.task.title for visit in sensors.frames(8.0) if visit.task]
+    assert titles[0] == "March in place"
+    assert "Turn left" in titles
+
+
+def test_leaving_the_set_up_leaves_all_as_it_was(sensors: Sensors) -> None:
+    sensors.visiting.use({"on_radps": 0.7, "sure_rad": 0.1, "swapped": True})
+    sensors.visiting.obey(SetUp(True), sensors.now_ns)
+    sensors.visiting.obey(SetUp(True), sensors.now_ns)  # two operators
+    sensors.frames(2.0)
+    sensors.visiting.obey(SetUp(False), sensors.now_ns)
+    assert sensors.visiting.kept()["swapped"]
+    assert sensors.frames(0.1)[-1].switches["swapped"]
+    assert sensors.visiting.kept()["on_radps"] == 0.7
+
+
+def test_keys_in_a_visitors_set_up_are_not_the_visitor(sensors: Sensors) -> None:
+    sensors.frames(1.0)
+    sensors.visiting.obey(SetUp(True), sensors.now_ns)
+    sensors.frames(4.0)
+    for _ in range(80):
+        sensors.visiting.obey(Steer("f"), sensors.now_ns)
+        task = sensors.frames(0.1)[-1].task
+    assert task is not None
+    assert task.title == "March in place"
+    assert "keys" in task.note
+
+
+def test_a_set_up_that_everybody_left_makes_way_and_a_stop_does_not(sensors: Sensors) -> None:
+    sensors.frames(1.0)
+    sensors.visiting.obey(SetUp(True), sensors.now_ns)
+    assert sensors.frames(5.0)[-1].task is not None
+    sensors.now_ns += round((IDLE_S + 1.0) * 1e9)
+    assert sensors.frames(0.2)[-1].task is None
+    north = sensors.walking()[-1].north
+    sensors.visiting.obey(Halt(), sensors.now_ns)
+    north = sensors.frames(1.0)[-1].north
+    sensors.feet.ask(MotionId.NONE)
+    sensors.frames(2.0)
+    sensors.now_ns += round((IDLE_S + 1.0) * 1e9)
+    visits = sensors.frames(0.2)
+    assert visits[-1].north == north > -30.0
+    assert visits[-1].idle_s is None

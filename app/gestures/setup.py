@@ -89,10 +89,10 @@ class SetUpGuide:
         self._listen(0 if reading.foot is Role.LEFT else 1, math.hypot(*reading.angular_rate_b))
         self._go_on()
 
-    def wait(self) -> None:
-        """A foot is not heard now: what was under way begins anew with the next reading."""
+    def wait(self, why: str) -> None:
+        """The feet are not listened to now: what was under way begins anew with the next reading."""
         if self.fitted is None:
-            self._again("A sensor was silent: this begins anew as soon as both are heard.")
+            self._again(why)
             self._began_ns = None
 
     @property

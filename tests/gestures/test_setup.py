@@ -103,7 +103,7 @@ def test_a_step_during_which_a_sensor_was_silent_begins_anew() -> None:
             break
         guide.take(reading)
     assert guide.task.title == "March in place"
-    guide.wait()
+    guide.wait("A sensor was silent.")
     assert (guide.task.title, guide.task.part) == ("March in place", 0.0)
     assert "silent" in guide.task.note
     much_later = all_[-1]._replace(t_ns=all_[-1].t_ns + 60_000_000_000)
