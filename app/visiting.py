@@ -142,6 +142,7 @@ class Visiting:
         self.hunt = hunts.begin(self.town, self.walker.north, self.walker.east, self.hunt.best_s)
         self.guide, self.message, self._busy_ns = None, "", None
         self._fresh, self._start_ns, self._stroller = True, None, None
+        self.sensors.intake.sided = False
         self.obey(Switch("swapped", False), now_ns)
         for name in ("on_radps", "sure_rad"):
             self._tune(name, TUNABLE[name].default)
@@ -290,6 +291,7 @@ class Visiting:
         if self.guide is None or not self.guide.over or self.guide.fitted is None:
             return
         fitted, self.guide = self.guide.fitted, None
+        self.sensors.intake.sided = True
         self.use({**vars(fitted.settings), "swapped": fitted.swapped})
 
     def _watch_idle(self, now_ns: int) -> None:

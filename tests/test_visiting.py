@@ -146,6 +146,9 @@ def test_the_set_up_holds_the_camera_and_sets_thresholds(sensors: Sensors) -> No
     ]  # fmt: skip
     assert sensors.visiting.tuning["on_radps"] != 0.5
     assert not sensors.visiting.switches["swapped"]
+    assert sensors.visiting.sensors.intake.sided
+    sensors.visiting.obey(NextVisitor(), sensors.now_ns)
+    assert not sensors.visiting.sensors.intake.sided
 
 
 def test_nobody_there_makes_way_for_the_next_visitor(sensors: Sensors) -> None:

@@ -45,6 +45,7 @@ class Intake:
         self.swapped = False
         self.feet = {role: Sensor() for role in FEET}
         self.strangers: dict[str, Role] = {}  # sensors nobody gave a side, and the side they got
+        self.sided = False  # a set-up has told which foot is which
 
     def take(self, sample: Sample) -> FootReading | None:
         """The reading of a foot, or None for a sensor on no foot and for a sample out of order."""
@@ -103,7 +104,7 @@ class Intake:
         left, right = (self.sensor(side).rate_hz for side in FEET)
         if left > 0.0 and right > 0.0 and not 0.8 < left / right < 1.25:
             return f"the feet have different rates: left {left:.0f} Hz, right {right:.0f} Hz"
-        if self.strangers:
+        if self.strangers and not self.sided:
             told = ", ".join(f"{name} as the {NAMES[side]}" for name, side in self.strangers.items())
             return f"no side was given: {told}; the set-up checks it"
         return ""

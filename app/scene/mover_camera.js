@@ -111,8 +111,15 @@ const mover = MOVER_TOLD;
     steer();
   };
   window.addEventListener("blur", letGo);
+  let leaving = false; // full screen by F; by Esc the page hears of no key, and it is to stop all the same
+  document.addEventListener("fullscreenchange", () => {
+    if (document.fullscreenElement) return;
+    if (!leaving && mover.presses.escape) send(mover.presses.escape);
+    leaving = false;
+  });
   window.addEventListener("keydown", (event) => {
-    if (typing(event.target) || event.ctrlKey || event.metaKey || event.altKey) return;
+    const stop = event.key === "Escape"; // wherever the hand is
+    if (!stop && (typing(event.target) || event.ctrlKey || event.metaKey || event.altKey)) return;
     if (/^(Arrow|[wasdqeWASDQE]$)/.test(event.key)) event.stopImmediatePropagation(); // viser's own camera keys
     if (arrows[event.key]) {
       event.preventDefault();
@@ -124,6 +131,7 @@ const mover = MOVER_TOLD;
     if (event.repeat) return;
     const key = event.key.toLowerCase();
     if (key === "f") {
+      leaving = Boolean(document.fullscreenElement);
       const full = document.fullscreenElement ? document.exitFullscreen() : document.documentElement.requestFullscreen();
       full.catch(() => {});
     }

@@ -133,7 +133,7 @@
     part.score.textContent = `${s.score} of ${s.targets} found  ·  ${clock(s.seconds)}${best}`;
     show(part.goal, s.goal);
     part.metres.textContent = s.goal ? `${s.goal.metres} m` : "";
-    const banner = s.halted ? "Stopped" : s.fault || s.message || (s.idle !== null ? `Next visitor in ${s.idle} s` : "");
+    const banner = s.halted ? "Stopped: the operator goes on with Space or Go on" : s.fault || s.message || (s.idle !== null ? `Next visitor in ${s.idle} s` : "");
     part.banner.textContent = banner;
     part.banner.classList.toggle("mv-bad", Boolean(s.halted || s.fault));
     show(part.banner, banner);

@@ -81,6 +81,8 @@ def test_sensors_without_a_side_get_one_and_it_is_said() -> None:
     assert second
     assert (first.foot, second.foot) == (Role.LEFT, Role.RIGHT)
     assert "A1 as the left foot" in made.note()
+    made.sided = True
+    assert made.note() == ""
     assert made.take(sample("C3", 0.0, 0.0)) is None
 
 

@@ -95,7 +95,15 @@ def test_arrow_keys_in_a_real_browser_walk_the_town_to_a_target(browser: Browser
         page.wait_for_function(motion, arg="turning left", timeout=PATIENCE_MS)
         page.keyboard.up("ArrowLeft")
         page.wait_for_function(motion, arg="standing", timeout=PATIENCE_MS)
-        page.keyboard.press("Escape")
+        page.evaluate("() => document.body.appendChild(document.createElement('input')).focus()")
+        page.keyboard.press("Escape")  # while the hand is in a field
+        page.wait_for_function(motion, arg="stopped", timeout=PATIENCE_MS)
+        page.evaluate("() => document.activeElement.blur()")
+        page.keyboard.press("f")
+        page.wait_for_function("() => document.fullscreenElement", timeout=PATIENCE_MS)
+        page.keyboard.press(" ")
+        page.wait_for_function(motion, arg="standing", timeout=PATIENCE_MS)
+        page.evaluate("() => document.exitFullscreen()")  # as Esc does, of which the page hears no key
         page.wait_for_function(motion, arg="stopped", timeout=PATIENCE_MS)
         page.close()
 
