@@ -1,3 +1,5 @@
+"""Missing readings by their numbers: damaged numbers count for nothing, few missing at once, many when it goes on."""
+
 from __future__ import annotations
 
 from hypothesis import given
