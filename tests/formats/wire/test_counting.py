@@ -1,4 +1,4 @@
-"""Missing readings by their numbers: damaged numbers count for nothing, few missing at once, many when it goes on."""
+"""Missing readings by their numbers: a damaged number counts for nothing, many only when it goes on."""
 
 from __future__ import annotations
 
